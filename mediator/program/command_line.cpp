@@ -122,6 +122,13 @@ void replace_old_names(const CLI::App& program, std::vector<std::string>& words,
     }
 }
 
+// "display preview" for "display audience".
+std::string present_command(const std::string& path) {
+    const std::size_t last = path.rfind(' ') + 1;
+    return path.substr(0, last) +
+           std::string(present_name("command", path.substr(last)).value_or(path.substr(last)));
+}
+
 CLI::Option* single(CLI::Option* option) {
     return option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)->capture_default_str();
 }
@@ -235,10 +242,13 @@ std::optional<int> CommandLine::parse(int argc, const char* const* argv, std::os
         return ExitUsage;
     };
     try {
-        if (const std::optional<std::string> path = config_path(words)) {
-            words = with_config(app, words, read_config(*path));
-        }
         replace_old_names(app, words, err);
+        if (const std::optional<std::string> path = config_path(words)) {
+            std::vector<ConfigSection> sections = read_config(*path);
+            for (ConfigSection& section : sections) section.command = present_command(section.command);
+            words = with_config(app, words, sections);
+            replace_old_names(app, words, err);  // keys of the file
+        }
         complete(words);
         app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes them last first
     } catch (const CLI::ParseError& error) {

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <limits>
 
+#include "client/tools/render_options.h"
 #include "mediator/picture/picture_encoder.h"
 
 namespace tessera::tools {
@@ -114,6 +115,28 @@ TEST_F(OcioView, KnownLightGivesKnownBytes) {
     const std::string bytes(reinterpret_cast<const char*>(png.data()), png.size());
     EXPECT_THAT(bytes, HasSubstr("OpenColorIO monitor, half, exposure +1.00 EV"));
     EXPECT_THAT(bytes, testing::Not(HasSubstr("sRGB"))) << "the file must not say that it is sRGB";
+}
+
+TEST_F(OcioView, DenoisedPicturesAreEncodedByTheClient) {
+    RenderOptions options;
+    options.view.scene = "room.glb";
+    options.outputs = {"room.png"};
+    options.filter.denoise = "fdf";
+    const auto plain = parse_options(options);
+    ASSERT_TRUE(plain) << plain.error().what();
+    EXPECT_EQ(plain->job.picture, session::PictureEncoding::Png);
+    options.display.ocio = config("named.ocio", Named);
+    const auto custom = parse_options(options);
+    ASSERT_TRUE(custom) << custom.error().what();
+    EXPECT_EQ(custom->job.picture, session::PictureEncoding::Planes);
+    ASSERT_TRUE(custom->custom_view);
+    EXPECT_EQ(custom->custom_view->name, "OpenColorIO monitor, half");
+    options.master = "tcp://127.0.0.1:7420";
+    options.name = "night";
+    options.detach = true;
+    const auto job = parse_options(options);
+    ASSERT_FALSE(job);
+    EXPECT_THAT(job.error().what(), HasSubstr("--ocio: the master encodes the picture of a job"));
 }
 
 TEST_F(OcioView, ErrorsNameWhatThereIs) {

@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include "client/tools/filter_options.h"
@@ -16,14 +17,16 @@ namespace {
 
 struct ParsedLine {
     std::optional<int> exit;
-    std::string chosen, owner, error;
+    std::string chosen, owner, width, error;
 };
 
 ParsedLine parsed_line(std::vector<const char*> words) {
     ParsedLine result;
     cli::CommandLine line("tessera", "a test");
     line.command("jobs", "a command").option("--owner", "a user", result.owner);
-    line.command("display", "a group of commands").command("preview", "a command");
+    line.command("display", "a group of commands")
+        .command("preview", "a command")
+        .option("--width", "a number", result.width);
     words.insert(words.begin(), "tessera");
     std::ostringstream out, err;
     result.exit = line.parse(static_cast<int>(words.size()), words.data(), out, err);
@@ -52,6 +55,17 @@ TEST(OldNames, OptionsWork) {
     }
     // A value that looks like an old name stays.
     EXPECT_EQ(parsed_line({"jobs", "--owner", "audience"}).owner, "audience");
+}
+
+TEST(OldNames, KeysAndTablesOfConfigurationFilesWork) {
+    std::string folder = std::filesystem::temp_directory_path() / "tessera-old-XXXXXX";
+    ASSERT_NE(::mkdtemp(folder.data()), nullptr);
+    const std::string file = folder + "/tessera.toml";
+    std::ofstream(file) << "[jobs]\nof = \"anna\"\n[display.audience]\nwidth = \"640\"\n";
+    EXPECT_EQ(parsed_line({"--config", file.c_str(), "jobs"}).owner, "anna");
+    for (const char* command : {"preview", "audience"})
+        EXPECT_EQ(parsed_line({"--config", file.c_str(), "display", command}).width, "640") << command;
+    std::filesystem::remove_all(folder);
 }
 
 TEST(OldNames, ParametersOfDenoisersWork) {
