@@ -122,7 +122,7 @@ void replace_old_names(const CLI::App& program, std::vector<std::string>& words,
     }
 }
 
-// "display preview" for "display audience".
+// The present path of a command whose last word may be an old name.
 std::string present_command(const std::string& path) {
     const std::size_t last = path.rfind(' ') + 1;
     return path.substr(0, last) +
