@@ -22,7 +22,7 @@ struct Frame {
     session::PictureEncoding encoding = session::PictureEncoding::None;
     std::vector<std::byte> picture;  // Planes: float32, one component after another, each in raster order
     std::optional<frame::FilmTile> film;  // of the whole window; pixels without samples have count 0
-    std::uint64_t samples_least = 0, samples_most = 0, spp = 0;  // per pixel
+    std::uint64_t min_samples = 0, max_samples = 0, spp = 0;  // per pixel
     bool complete = false;
     Hash256 film_hash;  // if complete, and if the view delivers every frame
 };

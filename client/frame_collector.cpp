@@ -76,8 +76,8 @@ std::optional<Frame> FrameCollector::take() {
                  .encoding = header.encoding,
                  .picture = std::move(picture_),
                  .film = std::exchange(film_, std::nullopt),
-                 .samples_least = header.samples_least,
-                 .samples_most = header.samples_most,
+                 .min_samples = header.min_samples,
+                 .max_samples = header.max_samples,
                  .spp = header.spp,
                  .complete = header.complete,
                  .film_hash = header.film_hash};

@@ -86,8 +86,8 @@ void Session::Implementation::take(wire::ControlMessage&& message) {
 }
 
 void Session::Implementation::take(const wire::SceneJoined& welcome) {
-    if (welcome.queue_place != 0) {
-        if (on_place) on_place(welcome.queue_place);
+    if (welcome.queue_position != 0) {
+        if (on_place) on_place(welcome.queue_position);
         return;
     }
     // A live scene may contain edits of others; an exclusive one contains only ours.

@@ -136,8 +136,8 @@ void SceneSession::handle(SessionRecord& session, const wire::FetchJob& request)
                                           .encoding = summary.picture.encoding,
                                           .picture_bytes = stored->picture->size(),
                                           .film_window = {},
-                                          .samples_least = summary.samples_least,
-                                          .samples_most = summary.samples_most,
+                                          .min_samples = summary.min_samples,
+                                          .max_samples = summary.max_samples,
                                           .complete = true},
                                .summary = summary,
                                .picture = stored->picture});

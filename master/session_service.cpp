@@ -221,7 +221,7 @@ void SessionService::tick(TimePoint now) {
         const std::uint32_t place = sessions_.queue_position(id);
         if (place == session.reported_position) continue;
         session.reported_position = place;
-        outbox_.control(session.control, wire::SceneJoined{.version = {}, .queue_place = place});
+        outbox_.control(session.control, wire::SceneJoined{.version = {}, .queue_position = place});
     }
     for (auto& [id, session] : sessions_.all()) {
         if (!session.fetcher.idle()) advance(session, now);

@@ -54,8 +54,8 @@ Json picture_value(const session::ViewSummary& result) {
             {"seconds_filter", picture.seconds_filter},
             {"seconds_encode", picture.seconds_encode},
             {"seconds_predicted", picture.seconds_predicted},
-            {"samples_least", result.samples_least},
-            {"samples_most", result.samples_most},
+            {"min_samples", result.min_samples},
+            {"max_samples", result.max_samples},
             {"passes", passes},
             {"notes", picture.notes}};
 }

@@ -186,7 +186,7 @@ class Watch {
                       static_cast<unsigned long long>(count),
                       static_cast<unsigned long long>(frame.version.number), frame.width, frame.height,
                       frame.scale > 1 ? (" (1/" + std::to_string(frame.scale) + ")").c_str() : "",
-                      static_cast<unsigned long long>(frame.samples_least),
+                      static_cast<unsigned long long>(frame.min_samples),
                       static_cast<unsigned long long>(frame.spp), frame.complete ? ", complete" : "");
         if (to_terminal_) {
             const auto rgb = picture::display_bytes(image, display_.transform, display_.custom_view());

@@ -56,7 +56,7 @@ std::optional<FrameLock::Present> FrameLock::ready(std::size_t i, std::uint64_t 
     output.in_flight = 0;
     if (output.state == OutputState::Late) {
         output.state = OutputState::Joining;
-        const Duration took = std::min(now - output.sent_at, settings_.most_patience / 2);
+        const Duration took = std::min(now - output.sent_at, settings_.max_timeout / 2);
         expected_ = std::max(expected_.value_or(took), took);
     }
     if (frame != frame_ || waiting_.erase(i) == 0) return std::nullopt;
@@ -67,7 +67,7 @@ std::optional<FrameLock::Present> FrameLock::ready(std::size_t i, std::uint64_t 
 }
 
 std::optional<FrameLock::Present> FrameLock::tick(TimePoint now) {
-    if (frame_ == 0 || now - last_sign_ < patience()) return std::nullopt;
+    if (frame_ == 0 || now - last_sign_ < timeout()) return std::nullopt;
     for (const std::size_t i : waiting_) {
         outputs_[i].state = OutputState::Late;
         ++outputs_[i].late;
@@ -83,13 +83,13 @@ std::optional<FrameLock::Present> FrameLock::present_if_all_ready(TimePoint now)
     constexpr int Forgets = 16;  // decays to a third after this many frames
     expected_ = std::max(pause_, expected_.value_or(Duration::zero()) * (Forgets - 1) / Forgets);
     if (present.outputs.empty()) return std::nullopt;
-    Duration lead = settings_.least_lead;
+    Duration lead = settings_.min_lead;
     for (const std::size_t i : present.outputs) {
         // The message takes at most a round trip, twice the bound of the clock offset.
         lead = std::max(lead, 2 * outputs_[i].bound);
         ++outputs_[i].frames;
     }
-    present.at = std::max(now + std::min(lead, settings_.most_lead), last_at_ + interval_);
+    present.at = std::max(now + std::min(lead, settings_.max_lead), last_at_ + interval_);
     if (!is_new_) return present;
     last_at_ = present.at;
     ++frames_;

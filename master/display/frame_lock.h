@@ -15,21 +15,21 @@ namespace tessera::master {
 struct LockSettings {
     // An output is late when no output became ready for this long, and for twice the longest pause between two in earlier
     // frames (large pictures and busy machines take longer).
-    Duration patience = std::chrono::milliseconds(100);
-    Duration first_patience = std::chrono::seconds(5);  // for the first frame
-    // Upper limit of the patience with an output that was late before.
-    Duration most_patience = std::chrono::seconds(2);
+    Duration timeout = std::chrono::milliseconds(100);
+    Duration first_timeout = std::chrono::seconds(5);  // for the first frame
+    // Upper limit of the timeout with an output that was late before.
+    Duration max_timeout = std::chrono::seconds(2);
     // Limits of the time between the present message and its present time: the message must have arrived by then.
-    Duration least_lead = std::chrono::milliseconds(2), most_lead = std::chrono::milliseconds(50);
+    Duration min_lead = std::chrono::milliseconds(2), max_lead = std::chrono::milliseconds(50);
 };
 
 // A software swap barrier: all outputs of a display present frame f together, in two phases. Every output reports that f
 // is ready, then all are sent the present time. An output that is not ready in time is dropped from the lock: it delays
-// the others once, by the patience, and rejoins as soon as it answers. Pure: (state, event, now) -> actions.
+// the others once, by the timeout, and rejoins as soon as it answers. Pure: (state, event, now) -> actions.
 //
 //   Absent   has no output client             joined -> Joining
 //   Joining  takes part from the next frame   begin -> Locked, if it is free
-//   Locked   is waited for                    patience over -> Late · left -> Absent
+//   Locked   is waited for                    timeout over -> Late · left -> Absent
 //   Late     has an old frame in flight       ready, whichever frame -> Joining
 class FrameLock {
   public:
@@ -65,7 +65,7 @@ class FrameLock {
     std::optional<Present> ready(std::size_t output, std::uint64_t frame, TimePoint now);
     // Drops late outputs.
     std::optional<Present> tick(TimePoint now);
-    TimePoint next_event() const { return frame_ == 0 ? TimePoint::max() : last_sign_ + patience(); }
+    TimePoint next_event() const { return frame_ == 0 ? TimePoint::max() : last_sign_ + timeout(); }
 
     const std::vector<Output>& outputs() const { return outputs_; }
     std::uint64_t frames() const { return frames_; }  // presented
@@ -73,8 +73,8 @@ class FrameLock {
 
   private:
     std::optional<Present> present_if_all_ready(TimePoint now);
-    Duration patience() const {
-        return expected_ ? std::max(settings_.patience, 2 * *expected_) : settings_.first_patience;
+    Duration timeout() const {
+        return expected_ ? std::max(settings_.timeout, 2 * *expected_) : settings_.first_timeout;
     }
 
     LockSettings settings_;

@@ -84,7 +84,7 @@ std::vector<NodeId> NodeTable::timed_out(TimePoint now) const {
 }
 
 std::vector<UnitId> NodeTable::overdue(NodeRecord& node, const std::vector<UnitId>& held, TimePoint now,
-                                       Duration patience) {
+                                       Duration timeout) {
     std::map<UnitId, TimePoint> unreported_since;
     std::vector<UnitId> overdue;
     for (const UnitId unit : held) {
@@ -95,7 +95,7 @@ std::vector<UnitId> NodeTable::overdue(NodeRecord& node, const std::vector<UnitI
         const auto known = node.unreported_since.find(unit);
         const TimePoint since = known == node.unreported_since.end() ? now : known->second;
         unreported_since.emplace(unit, since);
-        if (now - since > patience) overdue.push_back(unit);
+        if (now - since > timeout) overdue.push_back(unit);
     }
     node.unreported_since = std::move(unreported_since);
     return overdue;

@@ -73,9 +73,9 @@ class NodeTable {
     void heartbeat(NodeRecord& node, const wire::Heartbeat& heartbeat, TimePoint now);
     std::vector<NodeId> timed_out(TimePoint now) const;
     // `held`: the units that the scheduler expects from this node. Returns those that the node has not reported
-    // as in flight for longer than `patience` and whose film has not arrived: they are lost.
+    // as in flight for longer than `timeout` and whose film has not arrived: they are lost.
     static std::vector<UnitId> overdue(NodeRecord& node, const std::vector<UnitId>& held, TimePoint now,
-                                       Duration patience);
+                                       Duration timeout);
 
   private:
     net::LivenessSettings liveness_;

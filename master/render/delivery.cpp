@@ -178,8 +178,8 @@ void Delivery::ship(std::uint64_t frame, PendingFrame&& pending, const Reconstru
         header.components = summary.components;
         header.picture_bytes = made.picture.bytes->size();
     }
-    header.samples_least = made.samples_least;
-    header.samples_most = made.samples_most;
+    header.min_samples = made.min_samples;
+    header.max_samples = made.max_samples;
     if (made.film_hash) header.film_hash = *made.film_hash;
     const auto no_picture = std::make_shared<const std::vector<std::byte>>();
     for (const Key& key : pending.receivers) {
@@ -225,8 +225,8 @@ session::ViewSummary Delivery::end_of(const ViewState& view, const Reconstructed
     if (made.picture.bytes) {
         summary.picture = made.picture.summary;
         describe(view, summary.picture);
-        summary.samples_least = made.samples_least;
-        summary.samples_most = made.samples_most;
+        summary.min_samples = made.min_samples;
+        summary.max_samples = made.max_samples;
     }
     return summary;
 }

@@ -161,10 +161,10 @@ struct MeasuredEye {
 OutputResult reconstruct_output(OutputRequest request, const std::vector<frame::FilmTile>& films,
                                 Reconstructor& reconstructor) {
     OutputResult result{.request = std::move(request), .eyes = {}};
-    result.samples_least = ~std::uint64_t{0};
+    result.min_samples = ~std::uint64_t{0};
     for (const frame::FilmTile& film : films) {
-        result.samples_least = std::min<std::uint64_t>(
-            result.samples_least, *std::min_element(film.counts.begin(), film.counts.end()));
+        result.min_samples = std::min<std::uint64_t>(
+            result.min_samples, *std::min_element(film.counts.begin(), film.counts.end()));
     }
     try {
         const picture::ViewTransform& transform = result.request.transform;

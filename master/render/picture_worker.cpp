@@ -34,7 +34,7 @@ void PictureWorker::forget(ViewId first, ViewId last) {
 
 Reconstructed PictureWorker::reconstruct(const PictureTask& task) {
     const auto [least, most] = std::minmax_element(task.film.counts.begin(), task.film.counts.end());
-    Reconstructed result{.frame = task.frame, .picture = {}, .samples_least = *least, .samples_most = *most};
+    Reconstructed result{.frame = task.frame, .picture = {}, .min_samples = *least, .max_samples = *most};
     result.picture.bytes = std::make_shared<const std::vector<std::byte>>();
     if (task.hash_film) result.film_hash = frame::film_hash(task.film);
     if (task.format.encoding != session::PictureEncoding::None) {

@@ -43,7 +43,7 @@ struct FilmBlocks {
 struct Reconstructed {
     std::uint64_t frame = 0;
     Reconstruction picture;
-    std::uint64_t samples_least = 0, samples_most = 0;
+    std::uint64_t min_samples = 0, max_samples = 0;
     std::optional<Hash256> film_hash;
 };
 // How long a synthetic picture took in the configuration of a view.

@@ -15,7 +15,7 @@ session::ViewProgress progress_of(const ViewState& view, std::uint32_t nodes) {
         .phase = view.run.phase, .rays = view.run.rays, .nodes = nodes, .elapsed = {}};
     const view::View& last = view.passes.empty() ? view.request.view : view.passes.back().view;
     progress.samples = view.run.samples;
-    progress.samples_expected = last.window.pixel_count() * view.request.stop.most_samples();
+    progress.samples_expected = last.window.pixel_count() * view.request.stop.max_samples();
     if (!view.passes.empty()) progress.elapsed = view.run.seen_at - view.run.rendering_since;
     return progress;
 }

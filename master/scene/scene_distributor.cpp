@@ -68,12 +68,12 @@ void SceneDistributor::refused(NodeRecord& node, const wire::SceneRefused& refus
                                           std::to_string(refusal.version.number) + ": " + refusal.reason});
 }
 
-void SceneDistributor::repair(NodeTable& nodes, TimePoint now, Duration patience) {
+void SceneDistributor::repair(NodeTable& nodes, TimePoint now, Duration timeout) {
     for (auto& [id, node] : nodes.all()) {
         const bool busy = node.state.phase == session::NodePhase::Syncing ||
                           node.state.phase == session::NodePhase::Building || node.leaving;
         const bool settled = node.reported == authority_.version() || node.refused == authority_.version();
-        if (settled || busy || now - node.sent_at < patience) continue;
+        if (settled || busy || now - node.sent_at < timeout) continue;
         ++resyncs_;
         send_snapshot(node, now);
     }

@@ -24,8 +24,8 @@ class SceneDistributor {
 
     void refused(NodeRecord& node, const wire::SceneRefused& refusal);
 
-    // Sends the current version again to nodes that neither report nor build it `patience` after it was sent.
-    void repair(NodeTable& nodes, TimePoint now, Duration patience);
+    // Sends the current version again to nodes that neither report nor build it `timeout` after it was sent.
+    void repair(NodeTable& nodes, TimePoint now, Duration timeout);
 
     std::uint64_t resyncs() const { return resyncs_; }
 

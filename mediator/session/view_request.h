@@ -49,7 +49,7 @@ struct StopRule {
     bool has_budget() const { return budget > Duration::zero(); }
     bool has_clock() const { return has_budget() || time_limit > Duration::zero(); }
     // The maximum number of samples per pixel.
-    std::uint64_t most_samples() const {
+    std::uint64_t max_samples() const {
         return has_budget() || (has_clock() && spp == 0) ? MaxSamplesPerPixel : spp;
     }
 

@@ -113,7 +113,7 @@ struct ViewSummary {
     UnitCounts units;
     WireBytes wire_bytes;
     PictureSummary picture;
-    std::uint64_t samples_least = 0, samples_most = 0;  // per pixel; with a picture
+    std::uint64_t min_samples = 0, max_samples = 0;  // per pixel; with a picture
     static constexpr auto describe(auto row) {
         using Self = ViewSummary;
         return std::tuple(
@@ -125,7 +125,7 @@ struct ViewSummary {
             row(10, "triangles", &Self::triangles), row(11, "instances", &Self::instances),
             row(12, "lights", &Self::lights), row(13, "nodes", &Self::nodes), row(14, "units", &Self::units),
             row(15, "wire_bytes", &Self::wire_bytes), row(16, "picture", &Self::picture),
-            row(17, "samples_least", &Self::samples_least), row(18, "samples_most", &Self::samples_most));
+            row(17, "min_samples", &Self::min_samples), row(18, "max_samples", &Self::max_samples));
     }
 };
 

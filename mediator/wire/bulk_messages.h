@@ -77,7 +77,7 @@ struct FrameHeader {
     std::uint64_t picture_bytes = 0;
     Rect film_window;  // that the tiles cover; empty without film
     std::uint32_t film_tiles = 0;
-    std::uint64_t samples_least = 0, samples_most = 0, spp = 0;  // per pixel, and the final number
+    std::uint64_t min_samples = 0, max_samples = 0, spp = 0;  // per pixel, and the final number
     bool complete = false;
     Hash256 film_hash;  // when complete, of a view whose every frame is delivered
     static constexpr auto describe(auto row) {
@@ -89,7 +89,7 @@ struct FrameHeader {
             row(9, "encoding", &Self::encoding, UpTo{session::PictureEncoding::Exr}),
             row(10, "picture_bytes", &Self::picture_bytes), row(11, "film_window", &Self::film_window),
             row(12, "film_tiles", &Self::film_tiles), row(13, "complete", &Self::complete),
-            row(14, "samples_least", &Self::samples_least), row(15, "samples_most", &Self::samples_most),
+            row(14, "min_samples", &Self::min_samples), row(15, "max_samples", &Self::max_samples),
             row(16, "spp", &Self::spp), row(17, "film_hash", &Self::film_hash));
     }
     const char* malformed() const;

@@ -35,13 +35,13 @@ struct SceneJoined {
     std::uint64_t first_id = 0, id_count = 0;  // allocated to this editor for new objects
     std::uint64_t last_sequence = 0;           // the last answered edit: later ones have to be sent again
     std::string title, name;
-    std::uint32_t queue_place = 0;  // not 0: not joined yet; 1 = next
+    std::uint32_t queue_position = 0;  // not 0: not joined yet; 1 = next
     static constexpr auto describe(auto row) {
         return std::tuple(
             row(1, "version", &SceneJoined::version), row(2, "first_id", &SceneJoined::first_id),
             row(3, "id_count", &SceneJoined::id_count), row(4, "last_sequence", &SceneJoined::last_sequence),
             row(5, "title", &SceneJoined::title), row(6, "name", &SceneJoined::name),
-            row(7, "queue_place", &SceneJoined::queue_place));
+            row(7, "queue_position", &SceneJoined::queue_position));
     }
 };
 // The reply to requests without a specific reply.

@@ -54,8 +54,8 @@ TEST_F(SessionTest, ReportsQueuePositionsUntilTheSceneIsOpen) {
                              {});
     });
     EXPECT_FALSE(master_.expect<wire::JoinScene>().no_wait);
-    master_.send(wire::SceneJoined{.queue_place = 2});
-    master_.send(wire::SceneJoined{.queue_place = 1});
+    master_.send(wire::SceneJoined{.queue_position = 2});
+    master_.send(wire::SceneJoined{.queue_position = 1});
     master_.send(Scene);
     const auto scene = std::get<Joined>(joining.get());
     EXPECT_EQ(scene.version, (Version{1, 5}));

@@ -51,8 +51,8 @@ TEST_P(FilteredPicture, HasTheSameBitsForAnyCluster) {
     EXPECT_EQ(one.summary.picture.filter, GetParam());
     EXPECT_EQ(one.frame.picture.size(), std::size_t{90} * 60 * 3 * sizeof(float));
     EXPECT_FALSE(one.film()) << "it was not requested";
-    EXPECT_EQ(one.summary.samples_least, 6u);
-    EXPECT_EQ(one.summary.samples_most, 6u);
+    EXPECT_EQ(one.summary.min_samples, 6u);
+    EXPECT_EQ(one.summary.max_samples, 6u);
     session::ViewRequest three = picture_request(GetParam(), Policy::Cooperative);
     three.min_nodes = 3;
     EXPECT_EQ(render(3, three).frame.picture, one.frame.picture);
@@ -145,7 +145,7 @@ TEST(PictureRequest, WithABudgetEveryPixelHasTwoSamples) {
     const client::ViewResult result = render(2, request, 2us, 3);
     ASSERT_TRUE(result.has_picture()) << result.summary.message;
     EXPECT_EQ(result.summary.outcome, session::Outcome::TimeUp);
-    EXPECT_GE(result.summary.samples_least, 2u);
+    EXPECT_GE(result.summary.min_samples, 2u);
     EXPECT_GT(result.summary.picture.seconds_predicted, 0.0);
 }
 
@@ -160,7 +160,7 @@ TEST(PictureRequest, ATooSmallBudgetGivesAnUpsampledPictureWithANote) {
     EXPECT_GT(result.summary.picture.scale, 1u);
     EXPECT_EQ(result.frame.width, 90u);
     EXPECT_EQ(result.frame.height, 60u);
-    EXPECT_GE(result.summary.samples_least, 1u);
+    EXPECT_GE(result.summary.min_samples, 1u);
     ASSERT_FALSE(result.summary.picture.notes.empty());
     EXPECT_NE(result.summary.picture.notes.back().find("upsampled"), std::string::npos);
 }

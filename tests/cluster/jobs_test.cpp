@@ -57,7 +57,7 @@ TEST_F(Jobs, ContinueWithoutTheirClientAndGiveTheSamePicture) {
     const client::ViewResult expected = client::render(*cluster.batch(blobs), waited, {}, {});
     EXPECT_EQ(fetched.frame.picture, expected.frame.picture);
     EXPECT_EQ(fetched.frame.width, 90u);
-    EXPECT_EQ(fetched.summary.samples_least, 8u);
+    EXPECT_EQ(fetched.summary.min_samples, 8u);
     EXPECT_EQ(later->fetch_job({.name = "night"}).frame.picture, expected.frame.picture) << "repeatable";
     later->cancel_job({.name = "night"});
     EXPECT_TRUE(later->jobs().empty());

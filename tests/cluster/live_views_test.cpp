@@ -69,7 +69,7 @@ TEST_F(LiveViews, CoarseFirstAndFinallyTheBitsOfABatch) {
     EXPECT_TRUE(std::is_sorted(scales.rbegin(), scales.rend())) << "scales must not get coarser";
     EXPECT_EQ(scales.front(), 8u);
     const client::Frame& last = frames.back();
-    EXPECT_EQ(last.samples_least, 13u);
+    EXPECT_EQ(last.min_samples, 13u);
     ASSERT_TRUE(last.film);
     EXPECT_EQ(frame::film_hash(*last.film), last.film_hash);
 
@@ -130,13 +130,13 @@ TEST_F(LiveViews, AFilterWithMoreFeaturesGetsThemFromThenOn) {
     request.picture = session::PictureEncoding::Planes;
     ann->request_view(1, request);
     const client::Frame before = frames_until(*ann, [](const client::Frame& frame) {
-                                     return frame.scale == 1 && frame.samples_least >= 8;
+                                     return frame.scale == 1 && frame.min_samples >= 8;
                                  }).back();
     request.view.filter = "bilateral";
     ann->request_view(1, request);
     for (const client::Frame& frame : frames_until(*ann, complete)) {
         EXPECT_EQ(frame.scale, 1u) << "restarted";
-        EXPECT_GE(frame.samples_least, before.samples_least);
+        EXPECT_GE(frame.min_samples, before.min_samples);
     }
 }
 

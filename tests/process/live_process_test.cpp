@@ -117,7 +117,7 @@ TEST_F(LiveProcess, SamplesMergedBeforeTheCrashAreKept) {
     while (before < 256) {
         const auto frame = session->next_frame(deadline, {});
         ASSERT_TRUE(frame);
-        if (frame->scale == 1) before = frame->samples_least;
+        if (frame->scale == 1) before = frame->min_samples;
     }
     std::this_thread::sleep_for(1s);  // three checkpoints
     cluster.kill_master();
@@ -125,7 +125,7 @@ TEST_F(LiveProcess, SamplesMergedBeforeTheCrashAreKept) {
     cluster.start_master();
     (void)session->members();
     while (const auto frame = session->next_frame(std::chrono::steady_clock::now() + 3s, {})) {
-        if (frame->scale == 1) after = frame->samples_least;
+        if (frame->scale == 1) after = frame->min_samples;
         if (after >= 256) break;
     }
     node->signal(SIGCONT);

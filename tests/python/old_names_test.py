@@ -32,6 +32,13 @@ class OldNames(WithMaster):
         with self.assertRaisesRegex(tessera.InvalidInput, "no argument 'gestur'"):
             self.session.transaction(gestur=drag)
 
+    def test_sample_counts(self):
+        frame = self.session.open_view(self.POSE, size=(8, 4), spp=16).wait(samples=1)
+        with self.assertWarnsRegex(DeprecationWarning, "'samples_least' is now 'min_samples'"):
+            self.assertEqual(frame.samples_least, frame.min_samples)
+        with self.assertWarnsRegex(DeprecationWarning, "'samples_most' is now 'max_samples'"):
+            self.assertEqual(frame.samples_most, frame.max_samples)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -333,7 +333,7 @@ class ScriptedMaster:
         self.send_frame(member, number, samples, complete=1)
         self._say(member.control, "view_done", number=number, frame=member.frame[number], summary=view_pb2.ViewSummary(
             outcome=outcome, message=b"", version=self._version(), seconds_render=0.5, rays=7, samples=samples * 32,
-            samples_least=samples, samples_most=samples, nodes=[view_pb2.NodeSummary(name=b"n1")]))
+            min_samples=samples, max_samples=samples, nodes=[view_pb2.NodeSummary(name=b"n1")]))
 
     def _on_end_view(self, member, end):
         if end.deliver:
@@ -371,7 +371,7 @@ class ScriptedMaster:
                       scale=1, width=width, height=height, components=3, encoding=request.picture,
                       picture_bytes=len(picture), film_x=0, film_y=0, film_width=width if request.film else 0,
                       film_height=height if request.film else 0, film_tiles=2 if request.film else 0,
-                      complete=int(samples == request.stop.spp), samples_least=samples, samples_most=samples,
+                      complete=int(samples == request.stop.spp), min_samples=samples, max_samples=samples,
                       spp=request.stop.spp, film_hash=bytes(32))
         fields.update(changes)
         frame = fields["frame"]

@@ -21,7 +21,7 @@ class Views(WithMaster):
         time.sleep(0.3)  # no client waits: one frame is buffered, none follows
         self.assertEqual(self.master.members[1].frame[1], 1)
         frame = view.wait(samples=16)
-        self.assertEqual((frame.samples_least, frame.width, frame.height, frame.data), (16, 8, 4, PNG))
+        self.assertEqual((frame.min_samples, frame.width, frame.height, frame.data), (16, 8, 4, PNG))
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "room.png"
             frame.save(path)
@@ -156,7 +156,7 @@ class Views(WithMaster):
     def test_render(self):
         heard = []
         rendered = self.session.render(self.POSE, size=(8, 4), spp=16, film=True, budget=2.5, on_progress=heard.append)
-        self.assertEqual(rendered.frame.samples_least, 16)
+        self.assertEqual(rendered.frame.min_samples, 16)
         self.assertEqual(len(rendered.frame.film().counts), 32)
         self.assertEqual((rendered.summary.outcome, rendered.summary.rays, rendered.summary.nodes), ("complete", 7, ("n1",)))
         self.assertEqual([(p.phase, p.seconds) for p in heard], [("rendering", 1.5)])
@@ -167,10 +167,10 @@ class Views(WithMaster):
 
     def test_stopped_view_delivers_its_samples(self):
         view = self.session.open_view(self.POSE, size=(8, 4), spp=1 << 40)
-        self.assertEqual(view.wait(samples=1).samples_least, 1)
+        self.assertEqual(view.wait(samples=1).min_samples, 1)
         view.stop()
         end = view.wait_for_end(timeout=10.0)
-        self.assertEqual((end.summary.outcome, end.frame.samples_least), ("stopped", 3))
+        self.assertEqual((end.summary.outcome, end.frame.min_samples), ("stopped", 3))
 
     def test_exposure_and_view_transform(self):
         def wanted(view):
@@ -196,7 +196,7 @@ class Views(WithMaster):
             self.master.post(lambda lie=lie: self.master.send_frame(member, 1, 2, **lie))
             self.wait_for(lambda: member.taken.get(1) == frame)
         self.master.post(lambda: self.master.send_frame(member, 1, 2))
-        self.assertEqual(view.next_frame(5.0).samples_least, 2)
+        self.assertEqual(view.next_frame(5.0).min_samples, 2)
 
 
 if __name__ == "__main__":

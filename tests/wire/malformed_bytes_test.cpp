@@ -104,8 +104,8 @@ session::ViewSummary some_summary() {
                         .filter = "gauss:sigma=3",
                         .passes = {{"gauss", 0.5, 40.0}},
                         .notes = {"upsampled"}},
-            .samples_least = 3,
-            .samples_most = 9};
+            .min_samples = 3,
+            .max_samples = 9};
 }
 
 session::ClusterStatus some_status() {
@@ -236,8 +236,8 @@ std::vector<BulkMessage> bulk_messages() {
                         .picture_bytes = 1000,
                         .film_window = {0, 0, 160, 90},
                         .film_tiles = 4,
-                        .samples_least = 1,
-                        .samples_most = 2,
+                        .min_samples = 1,
+                        .max_samples = 2,
                         .spp = 64,
                         .complete = true,
                         .film_hash = blake2b({})}};

@@ -76,8 +76,8 @@ class FrameHeader:
     film_height: int
     film_tiles: int
     complete: int
-    samples_least: int
-    samples_most: int
+    min_samples: int
+    max_samples: int
     spp: int
     film_hash: bytes
 
@@ -116,7 +116,7 @@ def encode(message: BulkMessage) -> bytes:
             return _HEAD.pack(MAGIC, _FRAME) + _FRAME_HEADER.pack(
                 message.view, message.frame, message.epoch, message.number, message.revision, message.scale,
                 message.width, message.height, message.components, message.encoding, message.picture_bytes,
-                message.film_x, message.film_y, message.film_width, message.film_height, message.film_tiles, message.complete, message.samples_least, message.samples_most, message.spp,
+                message.film_x, message.film_y, message.film_width, message.film_height, message.film_tiles, message.complete, message.min_samples, message.max_samples, message.spp,
                 message.film_hash)
 
 

@@ -276,8 +276,8 @@ class Connection:
                 self.link.send_bulk(request)
 
     def _scene_joined(self, joined: Message) -> None:
-        if joined.queue_place:
-            _LOG.info("the cluster is busy: waiting, queue position %d", joined.queue_place)
+        if joined.queue_position:
+            _LOG.info("the cluster is busy: waiting, queue position %d", joined.queue_position)
             return
         if joined.last_sequence < self.answered:
             self.failed(Unavailable("the master has lost edits that it had accepted (was it restarted without its session "

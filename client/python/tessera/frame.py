@@ -12,13 +12,14 @@ from . import bulk
 from .errors import InvalidInput, Malformed
 from .film import Film, FilmTile, floats
 from .mirror import Version
+from .old_names import SampleCountNames
 
 _MAX_PICTURE = 1 << 30
 _SUFFIXES = {"png": (".png",), "jpeg": (".jpg", ".jpeg"), "exr": (".exr",)}
 
 
 @dataclass(frozen=True)
-class Frame:
+class Frame(SampleCountNames):
     """One picture of a view."""
 
     number: int  # counts from 1
@@ -27,8 +28,8 @@ class Frame:
     scale: int  # 8, 4, 2: a coarse picture of this part of the view's size
     width: int
     height: int
-    samples_least: int  # of a pixel
-    samples_most: int
+    min_samples: int  # of a pixel
+    max_samples: int
     spp: int  # target samples per pixel
     complete: bool
     film_hash: bytes  # when complete
@@ -114,7 +115,7 @@ class Assembly:
 
     def frame(self) -> Frame:
         h = self.header
-        return Frame(h.frame, (h.epoch, h.number), h.revision, h.scale, h.width, h.height, h.samples_least,
-                     h.samples_most, h.spp, bool(h.complete), h.film_hash if h.complete else b"",
+        return Frame(h.frame, (h.epoch, h.number), h.revision, h.scale, h.width, h.height, h.min_samples,
+                     h.max_samples, h.spp, bool(h.complete), h.film_hash if h.complete else b"",
                      bulk.ENCODINGS[h.encoding], h.components, bytes(self.picture),
                      tuple(self.tiles[i] for i in sorted(self.tiles)))

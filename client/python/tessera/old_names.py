@@ -47,6 +47,20 @@ class NodeStateNames:
         return self.units_in_flight  # type: ignore[attr-defined, no-any-return]
 
 
+class SampleCountNames:
+    """Of Frame and Summary."""
+
+    @property
+    def samples_least(self) -> int:
+        warn("samples_least", "min_samples")
+        return self.min_samples  # type: ignore[attr-defined, no-any-return]
+
+    @property
+    def samples_most(self) -> int:
+        warn("samples_most", "max_samples")
+        return self.max_samples  # type: ignore[attr-defined, no-any-return]
+
+
 def edit_group_of(edit_group: int, old: dict[str, int]) -> int:
     """The edit group of a transaction, also as the argument `gesture`."""
     unknown = sorted(set(old) - {"gesture"})

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from .mirror import Version
-from .old_names import MembersNames, NodeStateNames
+from .old_names import MembersNames, NodeStateNames, SampleCountNames
 
 Message = Any
 
@@ -130,7 +130,7 @@ class Progress:
 
 
 @dataclass(frozen=True)
-class Summary:
+class Summary(SampleCountNames):
     """Result of a view that has ended."""
 
     outcome: str  # "complete", "time_up", "stopped", "no_nodes", "failed"
@@ -139,8 +139,8 @@ class Summary:
     seconds_render: float
     rays: int
     samples: int  # of all pixels
-    samples_least: int  # per pixel; with a picture
-    samples_most: int
+    min_samples: int  # per pixel; with a picture
+    max_samples: int
     nodes: tuple[str, ...]  # names of the nodes that rendered
     filter: str  # name and parameters, as executed
     notes: tuple[str, ...]  # about the picture
@@ -188,6 +188,6 @@ def progress_of(message: Message) -> Progress:
 def summary_of(message: Message) -> Summary:
     outcome = _OUTCOMES[message.outcome] if message.outcome < len(_OUTCOMES) else "unknown"
     return Summary(outcome, text(message.message), (message.version.epoch, message.version.number),
-                   message.seconds_render, message.rays, message.samples, message.samples_least, message.samples_most,
+                   message.seconds_render, message.rays, message.samples, message.min_samples, message.max_samples,
                    tuple(text(node.name) for node in message.nodes), text(message.picture.filter),
                    tuple(text(note) for note in message.picture.notes))

@@ -100,7 +100,7 @@ class View:
             if frame is None:
                 raise Unavailable(f"no picture with {samples} samples after {timeout:g} s: is a node connected?")
             fresh = frame.revision >= self._revision and self._session.shows_all(frame.version)
-            full = samples == 0 or (frame.scale == 1 and frame.samples_least >= samples)
+            full = samples == 0 or (frame.scale == 1 and frame.min_samples >= samples)
             if fresh and (full or frame.complete):
                 return frame
 

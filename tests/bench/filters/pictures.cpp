@@ -38,7 +38,7 @@ struct PicturesOptions {
 struct Request {
     double seconds = 0.0;           // from the request to the encoded file
     double prediction_error = 0.0;  // actual minus predicted time of filter and encoding
-    std::uint64_t samples_least = 0;
+    std::uint64_t min_samples = 0;
     std::uint32_t scale = 1;
 };
 
@@ -130,7 +130,7 @@ class PicturesBench {
         Request done{.seconds = seconds(clock_.now() - started)};
         const session::PictureSummary& picture = result.summary.picture;
         if (!result.has_picture()) return done;
-        done.samples_least = result.summary.samples_least;
+        done.min_samples = result.summary.min_samples;
         done.scale = picture.scale;
         done.prediction_error = picture.seconds_filter + picture.seconds_encode - picture.seconds_predicted;
         return done;
@@ -172,7 +172,7 @@ class PicturesBench {
             on_time += request.seconds <= 1.05 * budget ? 1u : 0u;
             far_late += request.seconds > 1.25 * budget ? 1u : 0u;
             scaled += request.scale > 1 ? 1u : 0u;
-            least = std::min(least, request.samples_least);
+            least = std::min(least, request.min_samples);
         }
         const auto mean = [](const std::vector<double>& values) {
             double sum = 0.0;

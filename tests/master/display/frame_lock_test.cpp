@@ -87,7 +87,7 @@ TEST_F(Locked, PatienceAdaptsToLargePictures) {
     EXPECT_TRUE(lock.tick(now + 800ms));
 }
 
-// An output that needs longer than the patience is not dropped for ever.
+// An output that needs longer than the timeout is not dropped for ever.
 TEST_F(Locked, ConstantlySlowOutputIsEventuallyWaitedFor) {
     std::uint64_t dropped = 0;
     for (int i = 0; i < 20; ++i) {
