@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mediator/base/error.h"
+#include "mediator/scene/graph_size.h"
 #include "mediator/scene/scene.h"
 
 namespace tessera::backend {
@@ -35,11 +36,9 @@ struct FlatScene {
     std::vector<PlacedLight> lights;  // by (light, path)
 };
 
-// InvalidInput for a cycle below the root, for a graph deeper than MaxDepth, or when instances and lights
-// exceed `limit`. A missing child is skipped (validation reports it); a child that a parent lists twice counts
-// once.
-inline constexpr std::size_t MaxDepth = 1024;
-Expected<FlatScene> flatten(const scene::Scene& scene, std::size_t limit = 16'000'000);
+// InvalidInput for what scene::GraphSize refuses, with `limit` instances and lights. A missing child is skipped
+// (validation reports it); a child that a parent lists twice counts once.
+Expected<FlatScene> flatten(const scene::Scene& scene, std::size_t limit = scene::MaxPlacements);
 
 // The product of the transforms along a path, bit-identical to that of `flatten`.
 glm::dmat4 placement(const scene::Scene& scene, std::span<const ObjectId> path);

@@ -142,8 +142,8 @@ TEST(Flattening, AChainThatIsTooDeepIsRejected) {
         }
         return flatten(scene_with(result));
     };
-    EXPECT_TRUE(chain(MaxDepth));
-    EXPECT_FALSE(chain(MaxDepth + 1));
+    EXPECT_TRUE(chain(scene::MaxDepth));
+    EXPECT_FALSE(chain(scene::MaxDepth + 1));
     EXPECT_FALSE(chain(50'000));
 }
 
