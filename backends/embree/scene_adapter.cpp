@@ -1,6 +1,8 @@
 #include "backends/embree/scene_adapter.h"
 
 #include <array>
+#include <new>
+#include <utility>
 
 namespace tessera::embree {
 
@@ -26,7 +28,23 @@ SceneAdapter::SceneAdapter(RTCDevice device, std::shared_ptr<scene::BlobStore> b
 }
 
 Expected<backend::EditReport> SceneAdapter::commit() {
-    backend::SceneDelta delta = shadow_.take_delta();
+    try {
+        backend::EditReport report = build(shadow_.pending());
+        shadow_.accept();
+        version_ = shadow_.scene().version();
+        return report;
+    } catch (const Error& error) {
+        restore();
+        return failure(error.code(), std::string(error.what()) + "; version " +
+                                         std::to_string(version_.number) + " is kept");
+    } catch (const std::bad_alloc&) {
+        restore();
+        return failure(ErrorCode::OutOfMemory, "the scene does not fit into memory; version " +
+                                                   std::to_string(version_.number) + " is kept");
+    }
+}
+
+backend::EditReport SceneAdapter::build(const backend::SceneDelta& delta) {
     const backend::MeshCatalog::Result meshes = meshes_.update(shadow_.scene(), delta);
     mesh_scenes_.update(meshes_, meshes);
     const backend::TablesUpdate step = backend::update_tables(tables_, shadow_.scene(), shadow_.flat_scene(),
@@ -41,8 +59,21 @@ Expected<backend::EditReport> SceneAdapter::commit() {
         if (edit.retransformed > 0 || edit.refitted > 0) rtcCommitScene(top_.get());
     }
     check(device_, "building the top level");
-    version_ = shadow_.scene().version();
     return edit;
+}
+
+// What was built in part is of the version that failed: everything is made again from the last committed scene.
+void SceneAdapter::restore() {
+    shadow_.rollback();
+    const Version kept = std::exchange(version_, {});  // no unit is rendered if this fails as well
+    meshes_ = backend::MeshCatalog(blobs_);
+    meshes_.update(shadow_.scene(), backend::everything_in(shadow_.scene()));
+    mesh_scenes_.update(meshes_, meshes_.everything());
+    tables_ = backend::make_tables(shadow_.scene(), shadow_.flat_scene(), meshes_, *blobs_, mipmaps_);
+    mark_alpha_tested();
+    rebuild_top();
+    check(device_, "restoring the last version");
+    version_ = kept;
 }
 
 void SceneAdapter::update_instance(std::uint32_t instance) {

@@ -21,6 +21,7 @@ class SceneAdapter {
     // For callers without their own scene.
     Expected<void> apply(const scene::ChangeList& changes) { return shadow_.apply(changes); }
     void rollback() { shadow_.rollback(); }
+    // After an error the last committed version is there again.
     Expected<backend::EditReport> commit();
 
     Version version() const { return version_; }
@@ -29,6 +30,8 @@ class SceneAdapter {
     RTCScene scene() const { return top_.get(); }
 
   private:
+    backend::EditReport build(const backend::SceneDelta& delta);
+    void restore();
     void rebuild_top();
     std::uint32_t retransform(const backend::SceneDelta& delta);
     void update_instance(std::uint32_t instance);

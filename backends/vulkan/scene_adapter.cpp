@@ -3,25 +3,11 @@
 #include <iterator>
 
 #include "backends/vulkan/device/device.h"
+#include "backends/vulkan/device/result.h"
 
 namespace tessera::vulkan {
 
 namespace {
-
-backend::MeshCatalog::Result everything_in(const backend::MeshCatalog& meshes) {
-    backend::MeshCatalog::Result all{.everything = true};
-    for (const auto& [id, mesh] : meshes.all()) all.changes.push_back({id, backend::MeshUpdate::Rebuild});
-    return all;
-}
-
-// As if the scene had arrived as a snapshot.
-backend::SceneDelta everything_in(const scene::Scene& scene) {
-    backend::SceneDelta all{.everything = true};
-    for (const auto& [id, object] : scene.objects()) {
-        if (std::holds_alternative<scene::Geometry>(*object)) all.geometries.push_back({id, {}});
-    }
-    return all;
-}
 
 void add_notes(std::vector<std::string> notes, std::vector<std::string>& problems) {
     problems.insert(problems.end(), std::make_move_iterator(notes.begin()),
@@ -39,7 +25,7 @@ void SceneAdapter::move_to(Device* device) {
 void SceneAdapter::rebuild() {
     scene_.reset();
     auto scene = std::make_unique<GpuScene>(*device_, cache_, trees_);
-    scene->update(meshes_, everything_in(meshes_), tables_);
+    scene->update(meshes_, meshes_.everything(), tables_);
     scene_ = std::move(scene);
 }
 
@@ -52,7 +38,7 @@ void SceneAdapter::rollback() {
 void SceneAdapter::restore() {
     scene_.reset();
     meshes_ = backend::MeshCatalog(blobs_);
-    meshes_.update(shadow_.scene(), everything_in(shadow_.scene()));
+    meshes_.update(shadow_.scene(), backend::everything_in(shadow_.scene()));
     tables_ = backend::make_tables(shadow_.scene(), shadow_.flat_scene(), meshes_, *blobs_, mipmaps_);
     uncommitted_ = false;
 }
@@ -78,18 +64,20 @@ Expected<backend::EditReport> SceneAdapter::commit() {
         add_notes(cache_.take_notes(), report.problems);
         add_notes(device_->pipelines().take_notes(), report.problems);
         return report;
+    } catch (const DeviceLost&) {
+        throw;
     } catch (const Error& error) {
-        if (error.code() != ErrorCode::OutOfMemory) throw;
-        return reject_out_of_memory(error);
+        return reject(error);
     }
 }
 
-Expected<backend::EditReport> SceneAdapter::reject_out_of_memory(const Error& error) {
+Expected<backend::EditReport> SceneAdapter::reject(const Error& error) {
     rollback();
     rebuild();
+    const std::string kept = "; version " + std::to_string(version_.number) + " is kept";
+    if (error.code() != ErrorCode::OutOfMemory) return failure(error.code(), error.what() + kept);
     return failure(ErrorCode::OutOfMemory, "the scene does not fit into the memory of device " +
-                                               device_->info().name + ": " + error.what() + "; version " +
-                                               std::to_string(version_.number) + " is kept");
+                                               device_->info().name + ": " + error.what() + kept);
 }
 
 }  // namespace tessera::vulkan

@@ -9,7 +9,7 @@
 namespace tessera::vulkan {
 
 // The mirror of the scene on the host and its representation on the device, updated incrementally. A version
-// that does not fit into device memory is rejected, and the last good version is kept.
+// that cannot be built, e.g. since it does not fit into device memory, is rejected, and the last good one is kept.
 class SceneAdapter final {
   public:
     // BVHs are cached in the folder, see TreeCache.
@@ -41,7 +41,7 @@ class SceneAdapter final {
   private:
     void rebuild();
     void restore();
-    Expected<backend::EditReport> reject_out_of_memory(const Error& error);
+    Expected<backend::EditReport> reject(const Error& error);
 
     std::shared_ptr<scene::BlobStore> blobs_;
     backend::ShadowScene shadow_;

@@ -56,8 +56,8 @@ class EditScope {
     // The same for callers without a scene. InvalidInput also for whatever Scene::apply rejects.
     Expected<void> apply(const scene::ChangeList& changes);
     virtual const scene::Scene& scene() const = 0;  // after the lists so far
-    // Updates the device structures, each at the lowest sufficient cost. Call once. OutOfMemory: the device is out
-    // of memory, and the last good version stays.
+    // Updates the device structures, each at the lowest sufficient cost. Call once. After an
+    // error the last good version stays; OutOfMemory: the device is out of memory.
     virtual Expected<EditReport> commit() = 0;
 };
 

@@ -32,6 +32,14 @@ bool is_name_only(const Object& object, scene::FieldMask mask) {
 
 }  // namespace
 
+SceneDelta everything_in(const scene::Scene& scene) {
+    SceneDelta all{.everything = true, .instances_changed = true, .lights_changed = true};
+    for (const auto& [id, object] : scene.objects()) {
+        if (std::holds_alternative<Geometry>(*object)) all.geometries.push_back({id, {}});
+    }
+    return all;
+}
+
 Expected<void> ShadowScene::apply(const scene::ChangeList& changes) {
     const Expected<scene::Scene> after = scene::after(scene_, changes);
     return after ? apply(changes, *after) : tl::unexpected(after.error());

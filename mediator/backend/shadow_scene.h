@@ -32,6 +32,9 @@ struct SceneDelta {
     std::vector<std::string> ignored_kinds;  // object kinds of the edit that back-ends ignore (attachments)
 };
 
+// As if the scene had arrived as a snapshot.
+SceneDelta everything_in(const scene::Scene& scene);
+
 // A back-end's copy of the scene and its flattened form, shared by all back-ends (Schwenk 5.3.2.3). Deltas of
 // consecutive lists accumulate until accept(); until then rollback() undoes them. The result does not depend on the
 // edit history: it equals that of a snapshot. The cost of moving a transform is proportional to the instances below it.

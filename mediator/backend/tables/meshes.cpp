@@ -83,6 +83,12 @@ std::uint32_t MeshCatalog::Result::count(MeshUpdate step) const {
         changes.begin(), changes.end(), [&](const Change& change) { return change.step == step; }));
 }
 
+MeshCatalog::Result MeshCatalog::everything() const {
+    Result all{.everything = true};
+    for (const auto& [id, mesh] : meshes_) all.changes.push_back({id, MeshUpdate::Rebuild});
+    return all;
+}
+
 const Mesh* MeshCatalog::find(ObjectId id) const {
     const auto it = meshes_.find(id);
     return it == meshes_.end() ? nullptr : &it->second;

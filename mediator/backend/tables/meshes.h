@@ -60,6 +60,8 @@ class MeshCatalog {
     };
     Result update(const scene::Scene& scene, const SceneDelta& delta);
 
+    Result everything() const;  // all meshes, as if they were new
+
     const Mesh* find(ObjectId id) const;
     const std::map<ObjectId, Mesh>& all() const { return meshes_; }
 
