@@ -27,6 +27,11 @@ std::string DiskSync::problem() const {
     return problem_;
 }
 
+void DiskSync::forget_problem() {
+    const std::scoped_lock lock(mutex_);
+    problem_.clear();
+}
+
 void DiskSync::run(const std::stop_token& stop) {
     bool last = false;
     while (!last) {

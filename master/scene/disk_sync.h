@@ -22,6 +22,7 @@ class DiskSync {
 
     void soon(const FilePtr& file);  // in the order of these calls
     std::string problem() const;     // the first error; empty = none
+    void forget_problem();           // what it was about has been written elsewhere
 
   private:
     void run(const std::stop_token& stop);

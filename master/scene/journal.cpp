@@ -27,7 +27,8 @@ void Journal::sync_folder(const std::filesystem::path& folder) {
 
 Expected<void> Journal::append(const wire::JournalRecord& record) {
     if (const std::string problem = sync_.problem(); !problem.empty())
-        return failure(ErrorCode::Io, problem + "; start the master again with another --session");
+        return failure(ErrorCode::Io,
+                       problem + "; edits are accepted again when a checkpoint can be written");
     std::vector<std::byte> bytes;
     try {
         bytes = wire::encode(record);

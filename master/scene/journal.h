@@ -29,6 +29,9 @@ class Journal final : public EditRecorder {
     // Starts a new segment and returns its number: the checkpoint of that number contains everything recorded
     // before. Throws Error{Io} and then keeps using the old segment.
     std::uint64_t start_segment();
+    // Why nothing is recorded any more; "" = it is. A checkpoint that was written since holds everything: recovered().
+    std::string problem() const { return sync_.problem(); }
+    void recovered() { sync_.forget_problem(); }
     std::uint64_t byte_size() const { return earlier_bytes_ + segment_.byte_size(); }  // of this journal
 
   private:

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <optional>
 
 #include "mediator/base/hash.h"
 
@@ -109,6 +110,31 @@ Expected<void> JournalFile::append(std::span<const std::byte> payload) {
     return {};
 }
 
+namespace {
+
+// The length of the record that `rest` begins with; nothing: it is incomplete or damaged. A length with one wrong bit
+// would cost this record and all after it: the checksum says which bit it is.
+struct RecordLength {
+    std::optional<std::uint32_t> length;
+    bool is_repaired = false;
+};
+RecordLength length_of(std::span<const std::byte> rest, const std::vector<std::byte>& chain) {
+    std::uint32_t stored = 0;
+    std::memcpy(&stored, rest.data(), sizeof stored);
+    const auto matches = [&](std::uint32_t length) {
+        if (length == 0 || rest.size() - RecordHead < length) return false;
+        const std::vector<std::byte> sum = checksum(chain, rest.subspan(RecordHead, length));
+        return std::equal(sum.begin(), sum.end(), rest.begin() + LengthBytes);
+    };
+    if (matches(stored)) return {stored, false};
+    for (std::uint32_t bit = 1; bit != 0; bit <<= 1) {
+        if (matches(stored ^ bit)) return {stored ^ bit, true};
+    }
+    return {};
+}
+
+}  // namespace
+
 JournalScan read_journal(const std::filesystem::path& path, std::uint64_t number,
                          const std::function<Expected<void>(std::span<const std::byte>)>& take) {
     const std::vector<std::byte> file = journal_bytes(path);
@@ -131,20 +157,22 @@ JournalScan read_journal(const std::filesystem::path& path, std::uint64_t number
     while (scan.offset < file.size()) {
         const std::span<const std::byte> rest = all.subspan(scan.offset);
         if (rest.size() < RecordHead) return stop(JournalEnd::Torn, "the last record is incomplete");
-        std::uint32_t length = 0;
-        std::memcpy(&length, rest.data(), sizeof length);
-        // A length that was damaged looks like a record that goes on behind the end.
-        if (length == 0) return stop(JournalEnd::Damaged, "a record without content");
-        if (rest.size() - RecordHead < length)
-            return stop(JournalEnd::Torn, "the last record is incomplete, or its length is damaged");
-        const auto payload = rest.subspan(RecordHead, length);
-        std::vector<std::byte> sum = checksum(chain, payload);
-        if (!std::equal(sum.begin(), sum.end(), rest.begin() + LengthBytes)) {
-            const bool last = rest.size() == RecordHead + length;
-            return stop(last ? JournalEnd::Torn : JournalEnd::Damaged, "a record's checksum does not match");
+        const RecordLength found = length_of(rest, chain);
+        if (!found.length) {
+            std::uint32_t stored = 0;
+            std::memcpy(&stored, rest.data(), sizeof stored);
+            if (stored == 0) return stop(JournalEnd::Damaged, "a record without content");
+            const std::size_t bytes = rest.size() - RecordHead;
+            if (bytes < stored)
+                return stop(JournalEnd::Torn, "the last record is incomplete, or its length is damaged");
+            return stop(bytes == stored ? JournalEnd::Torn : JournalEnd::Damaged,
+                        "a record's checksum does not match");
         }
+        scan.repaired += found.is_repaired ? 1 : 0;
+        const std::uint32_t length = *found.length;
+        const auto payload = rest.subspan(RecordHead, length);
         if (auto taken = take(payload); !taken) return stop(JournalEnd::Damaged, taken.error().what());
-        chain = std::move(sum);
+        chain.assign(rest.begin() + LengthBytes, rest.begin() + RecordHead);
         scan.offset += RecordHead + length;
         ++scan.records;
     }

@@ -63,7 +63,8 @@ struct JournalScan {
     JournalEnd end = JournalEnd::Complete;
     std::uint64_t offset = 0;  // of the first invalid byte: all before it are valid
     std::uint64_t byte_size = 0;
-    std::string text;  // where and why, unless complete
+    std::string text;            // where and why, unless complete
+    std::uint64_t repaired = 0;  // records with one wrong bit in their length
 };
 
 // Passes every valid record to `take` in order, until `take` fails (the scan then ends there as damaged, with its

@@ -30,7 +30,7 @@ class Recoverer {
         for (const std::uint64_t number : files_.journals) {
             if (number < first) continue;
             if (usable && number != expected) {
-                note(journal_path(folder_, expected).string() + " is missing: later segments cannot be used");
+                loss(journal_path(folder_, expected).string() + " is missing: later segments cannot be used");
                 usable = false;
             }
             usable = usable ? replay(number) : keep_as_damaged(journal_path(folder_, number));
@@ -44,6 +44,7 @@ class Recoverer {
 
   private:
     void note(std::string text) { recovery_.notes.push_back(std::move(text)); }
+    void loss(std::string text) { recovery_.losses.push_back(std::move(text)); }
 
     // Returns the first segment after it.
     std::uint64_t use_checkpoint() {
@@ -65,7 +66,7 @@ class Recoverer {
                 state =
                     failure(ErrorCode::InvalidInput, "'" + path.string() + "': " + authority.error().what());
             }
-            note("checkpoint " + std::string(state.error().what()) + "; the previous one is used");
+            loss("checkpoint " + std::string(state.error().what()) + "; the previous one is used");
             bad.push_back(path);
         }
         const bool complete = !files_.journals.empty() && files_.journals.front() == 1;
@@ -86,7 +87,7 @@ class Recoverer {
     void check_films(const fs::path& path, std::uint32_t revision) {
         if (revision == frame::RenderRevision) return;
         for (wire::SavedView& view : recovery_.views) view.blocks.clear();
-        note("checkpoint '" + path.string() + "' holds film of render revision " + std::to_string(revision) +
+        loss("checkpoint '" + path.string() + "' holds film of render revision " + std::to_string(revision) +
              ", this master merges revision " + std::to_string(frame::RenderRevision) +
              ": its views start again");
     }
@@ -98,14 +99,18 @@ class Recoverer {
             const auto record = wire::decode_journal_record(bytes);
             return record ? use(*record) : Expected<void>(tl::unexpected(record.error()));
         });
+        if (scan.repaired != 0) {
+            loss("journal '" + path.string() + "': the lengths of " + std::to_string(scan.repaired) +
+                 " records had a wrong bit and are repaired; check the disk");
+        }
         if (scan.end == JournalEnd::Complete || scan.records != 0) recovery_.next_segment = number + 1;
         if (scan.end == JournalEnd::Complete) return true;
         const bool last = number == files_.journals.back();
         if (scan.end == JournalEnd::Torn && last) {
-            note("journal " + scan.text +
+            loss("journal " + scan.text +
                  ": an incomplete record at the end (the master crashed while writing it) is cut off");
         } else {
-            note("journal " + scan.text + ": everything from there on is lost");
+            loss("journal " + scan.text + ": everything from there on is lost");
         }
         cut(path, scan);
         return false;
@@ -158,7 +163,7 @@ class Recoverer {
             throw Error(ErrorCode::Io,
                         "cannot rename '" + path.string() + "' to .damaged: " + error.message());
         }
-        note("'" + path.string() + "' is kept as .damaged");
+        loss("'" + path.string() + "' is kept as .damaged");
         return false;
     }
 
@@ -179,7 +184,7 @@ class Recoverer {
             if (scene::BlobPtr found = scene::read_blob(blobs_path(folder_), blob)) {
                 blobs_.insert(std::move(found));
             } else {
-                note("blob '" + scene::blob_path(blobs_path(folder_), blob).string() +
+                loss("blob '" + scene::blob_path(blobs_path(folder_), blob).string() +
                      "' is missing or damaged: send the objects that need it again");
             }
         }

@@ -12,9 +12,10 @@ struct Recovery {
     bool found = false;         // a session was found and restored into the authority
     wire::RecordedTitle scene;  // no title: no scene was open
     std::vector<wire::SavedView> views;
-    std::uint64_t edits = 0;         // replayed from the journal
-    std::uint64_t next_segment = 1;  // for the Journal
-    std::vector<std::string> notes;  // for the log: what was used, damaged or missing
+    std::uint64_t edits = 0;          // replayed from the journal
+    std::uint64_t next_segment = 1;   // for the Journal
+    std::vector<std::string> notes;   // for the log: what was used
+    std::vector<std::string> losses;  // what is damaged, missing or given up
 };
 
 // Restores the folder's session into a new authority: the newest valid checkpoint, then the journal after it. An

@@ -1,5 +1,7 @@
 #include "master/scene/session_journal.h"
 
+#include <algorithm>
+
 namespace tessera::master {
 
 SessionJournal::SessionJournal(const std::filesystem::path& folder, Duration interval,
@@ -12,6 +14,7 @@ SessionJournal::SessionJournal(const std::filesystem::path& folder, Duration int
       recovery_(recover(folder_, authority, *blobs)),
       writer_(folder) {
     for (const std::string& note : recovery_.notes) events_({wire::Severity::Info, note});
+    for (const std::string& loss : recovery_.losses) events_({wire::Severity::Warning, loss});
     journal_.emplace(folder, std::move(blobs), recovery_.next_segment);
 }
 
@@ -39,22 +42,34 @@ void SessionJournal::job_ended(const session::JobName& job) {
 void SessionJournal::tick() {
     const auto result = writer_.take_result();
     if (!result) return;
-    if (result->problem.empty()) {
-        ++checkpoints_;
-    } else {
+    last_write_failed_ = !result->problem.empty();
+    if (last_write_failed_) {
         events_({wire::Severity::Error, "no checkpoint: " + result->problem});
+        return;  // tried again after the interval
+    }
+    ++checkpoints_;
+    saved_ = being_saved_;
+    if (!journal_->problem().empty()) {
+        journal_->recovered();
+        events_({wire::Severity::Info, "the session is on disk again: edits are accepted"});
     }
 }
 
+bool SessionJournal::has_news(std::uint64_t film_progress) const {
+    return is_open_ && !writer_.busy() && saved_ != std::pair(authority_.transactions(), film_progress);
+}
+
 bool SessionJournal::wants_checkpoint(std::uint64_t film_progress, TimePoint now) const {
-    return is_open_ && now - last_ >= interval_ && !writer_.busy() &&
-           saved_ != std::pair(authority_.transactions(), film_progress);
+    constexpr Duration RetryInterval = std::chrono::seconds(1);
+    const bool is_broken = is_open_ && !writer_.busy() && !journal_->problem().empty();
+    if (is_broken) return now - last_ >= std::min(interval_, RetryInterval);
+    return now - last_ >= interval_ && has_news(film_progress);
 }
 
 void SessionJournal::write_checkpoint(const wire::RecordedTitle& scene, std::vector<wire::SavedView>&& views,
                                       std::uint64_t film_progress, TimePoint now) {
     last_ = now;
-    saved_ = {authority_.transactions(), film_progress};
+    being_saved_ = {authority_.transactions(), film_progress};
     if (!is_open_) return;
     try {
         const std::uint64_t number = journal_->start_segment();

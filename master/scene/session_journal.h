@@ -30,7 +30,11 @@ class SessionJournal {
     void job_ended(const session::JobName& job);
 
     void tick();
-    // True when a checkpoint is due and there are new edits or new film (`film_progress` differs).
+    bool is_writing() const { return writer_.busy(); }
+    bool last_write_failed() const { return last_write_failed_; }
+    // True when there are new edits or new film (`film_progress` differs), and none is being written.
+    bool has_news(std::uint64_t film_progress) const;
+    // The same, when a checkpoint is due: after the interval, or after a second if the journal cannot be written.
     bool wants_checkpoint(std::uint64_t film_progress, TimePoint now) const;
     // Writes the session and these views, which were copied at `film_progress`.
     void write_checkpoint(const wire::RecordedTitle& scene, std::vector<wire::SavedView>&& views,
@@ -48,8 +52,9 @@ class SessionJournal {
     std::optional<Journal> journal_;
     CheckpointWriter writer_;
     TimePoint last_{};
-    std::pair<std::uint64_t, std::uint64_t> saved_{};  // transactions and film of the last checkpoint
-    bool is_open_ = false;
+    using Progress = std::pair<std::uint64_t, std::uint64_t>;  // transactions and film
+    Progress saved_{}, being_saved_{};  // by the last checkpoint; by the one being written
+    bool is_open_ = false, last_write_failed_ = false;
     std::uint64_t checkpoints_ = 0;
 };
 

@@ -30,7 +30,8 @@ Expected<void> write_blob(const fs::path& folder, const Blob& blob) {
     const fs::path path = blob_path(folder, reference(blob));
     const fs::path unfinished = path.string() + "." + std::to_string(::getpid()) + ".part";
     std::error_code error;
-    if (fs::exists(path, error)) return {};
+    // What a loss of power left of it is written again.
+    if (read_blob(folder, reference(blob))) return {};
     {
         std::ofstream file(unfinished, std::ios::binary);
         file.write(reinterpret_cast<const char*>(blob.bytes().data()),

@@ -3,6 +3,8 @@
 #include <sys/resource.h>
 
 #include <csignal>
+#include <cstring>
+#include <set>
 
 #include "tests/master/scene/session_fixture.h"
 
@@ -64,13 +66,27 @@ TEST_F(JournalFileTest, TruncatedFileKeepsTheCompleteRecords) {
     EXPECT_EQ(last, 0u);
 }
 
-TEST_F(JournalFileTest, DetectsFlippedBits) {
+TEST_F(JournalFileTest, DetectsFlippedBitsAndRepairsThoseOfLengths) {
     const std::string whole = read(file);
+    std::set<std::size_t> bytes_of_lengths;
+    for (std::size_t at = 16; at < whole.size();) {
+        std::uint32_t length = 0;
+        std::memcpy(&length, whole.data() + at, sizeof length);
+        for (std::size_t i = 0; i < sizeof length; ++i) bytes_of_lengths.insert(at + i);
+        at += sizeof length + 16 + length;
+    }
     for (std::size_t bit = 0; bit < whole.size() * 8; bit += 7) {
         std::string damaged = whole;
         damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << (bit % 8)));
         write(file, damaged);
         const JournalScan scan = scan_prefix();
+        if (bytes_of_lengths.contains(bit / 8)) {
+            ASSERT_EQ(scan.end, JournalEnd::Complete);
+            ASSERT_EQ(scan.records, Records);
+            ASSERT_EQ(scan.repaired, 1u);
+            continue;
+        }
+        ASSERT_EQ(scan.repaired, 0u);
         ASSERT_LT(scan.records, Records);
         ASSERT_NE(scan.end, JournalEnd::Complete);
         ASSERT_LE(scan.offset, bit / 8);

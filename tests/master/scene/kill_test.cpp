@@ -53,7 +53,7 @@ TEST_F(KillTest, NoAcknowledgedEditIsLost) {
         const SessionFolder files(folder);
         Master again(1000 + round), reference(1);
         const Recovery recovery = recover(files, again.authority, *again.blobs);
-        ASSERT_FALSE(mentions(recovery, "lost")) << recovery.notes.back();
+        ASSERT_FALSE(mentions(recovery, "lost")) << recovery.losses.back();
         if (acknowledged == 0) continue;
         // The time of an edit is its step: the latest of all is the last that was recorded.
         std::uint64_t steps = 0;

@@ -101,8 +101,9 @@ struct SessionFixture : testing::Test {
         std::ofstream(path, std::ios::binary) << content;
     }
     static bool mentions(const Recovery& recovery, const std::string& text) {
-        return std::any_of(recovery.notes.begin(), recovery.notes.end(),
-                           [&](const std::string& note) { return note.find(text) != std::string::npos; });
+        const auto names = [&](const std::string& note) { return note.find(text) != std::string::npos; };
+        return std::any_of(recovery.notes.begin(), recovery.notes.end(), names) ||
+               std::any_of(recovery.losses.begin(), recovery.losses.end(), names);
     }
 
     const fs::path folder =
