@@ -12,13 +12,13 @@ NodeCapacity NodeRecord::capacity() const {
             .in_flight = static_cast<std::uint32_t>(state.in_flight.size()) + on_the_way};
 }
 
-std::optional<wire::OpenView> NodeRecord::opening(const view::View& view) {
+std::optional<wire::OpenView> NodeRecord::opening(const view::View& view, Duration hold_film) {
     std::uint64_t& revision = views[view.id];
     if (revision == view.revision) return std::nullopt;
     revision = view.revision;
     view::View opened = view;
     opened.filter.clear();  // only the master uses it
-    return wire::OpenView{std::move(opened)};
+    return wire::OpenView{std::move(opened), hold_film};
 }
 
 NodeRecord& NodeTable::add(NodeId id, std::uint64_t token, net::PeerId control, std::string user,

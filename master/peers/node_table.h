@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "master/peers/node_capacity.h"
+#include "master/peers/quarantine.h"
 #include "mediator/net/channel.h"
 #include "mediator/net/clock_offset.h"
 #include "mediator/net/liveness.h"
@@ -37,14 +38,19 @@ struct NodeRecord {
         unreported_since;  // neither in flight on the node nor merged: film on the wire, or lost
     std::map<ViewId, std::uint64_t> views;  // opened, and at which revision
     bool leaving = false;
+    bool quarantined = false;        // gets no work; see quarantine.h
+    std::uint64_t film_taken = 0;    // bytes of film messages merged or dropped since its welcome
+    bool film_taken_is_new = false;  // not reported to it yet
     double round_trip_seconds = 0;
     net::PeerClock clock;
     std::uint64_t last_progress = 0;  // for stuck detection
     TimePoint last_progress_at{};
     bool stuck = false;
 
+    Quarantine::Key identity() const { return {user, hello.name}; }
+
     // The message to send before work on the view; nothing if the node has this revision already.
-    std::optional<wire::OpenView> opening(const view::View& view);
+    std::optional<wire::OpenView> opening(const view::View& view, Duration hold_film);
 
     // Free slots as reported by the node, less the units sent since.
     NodeCapacity capacity() const;

@@ -9,6 +9,10 @@ void Outbox::control(net::PeerId peer, const wire::ControlMessage& message) {
 }
 
 void Outbox::control(net::PeerId peer, net::Bytes&& encoded) {
+    if (!wire::fits_control(encoded)) {  // its receiver would end the connection
+        throw Error(ErrorCode::Internal, "a control message of " + std::to_string(encoded.size()) +
+                                             " bytes is longer than peers accept: it was not sent");
+    }
     bytes.control += encoded.size();
     put(net::Link::Control, peer, std::move(encoded));
 }

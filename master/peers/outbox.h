@@ -15,6 +15,7 @@ class Outbox {
   public:
     explicit Outbox(net::Channel& channel) : channel_(channel) {}
 
+    // Throws Error{Internal} for a message longer than peers accept: a bug, which does not end the connection.
     void control(net::PeerId peer, const wire::ControlMessage& message);
     void control(net::PeerId peer, net::Bytes&& encoded);
     void bulk(net::PeerId peer, const wire::BulkMessage& message);

@@ -15,6 +15,8 @@ bool is_among(net::Role role, wire::Senders senders) {
             return node;
         case wire::Senders::Editors:
             return editor;
+        case wire::Senders::Operators:
+            return role == Operator;
         case wire::Senders::Clients:
             return editor || role == Viewer;
         case wire::Senders::Everyone:

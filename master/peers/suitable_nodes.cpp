@@ -47,8 +47,8 @@ std::string missing_room(const NodeTable& nodes, Version version) {
 
 bool suits(const NodeRecord& node, const view::View& view, Version version) {
     const bool has_channels = node.hello.channels.contains(view.channels);
-    return !node.leaving && !node.stuck && node.bulk && has_channels && node.refused != version &&
-           node.hello.renderers.contains(view.renderer);
+    return !node.leaving && !node.stuck && !node.quarantined && node.bulk && has_channels &&
+           node.refused != version && node.hello.renderers.contains(view.renderer);
 }
 
 bool ready(const NodeRecord& node, const view::View& view, Version version) {

@@ -17,6 +17,11 @@ double Balancer::rate(NodeId node) const {
     return it == rates_.end() ? 0.0 : it->second;
 }
 
+double Balancer::assumed_rate(NodeId node) const {
+    const double measured_rate = rate(node);
+    return measured_rate > 0.0 ? measured_rate : settings_.first_samples / settings_.unit_seconds;
+}
+
 std::uint64_t Balancer::unit_samples(NodeId node, std::uint64_t remaining, std::uint32_t workers) const {
     const double measured_rate = rate(node);
     const double wanted =

@@ -23,7 +23,9 @@ class Balancer {
     void measured(NodeId node, std::uint64_t samples, Duration busy);
     void forget(NodeId node) { rates_.erase(node); }
 
-    double rate(NodeId node) const;  // pixel samples per second of one worker; 0 = not measured
+    double rate(NodeId node) const;          // pixel samples per second of one worker; 0 = not measured
+    double assumed_rate(NodeId node) const;  // the same; not measured: that of a first unit in `unit_seconds`
+    double unit_seconds() const { return settings_.unit_seconds; }
 
     // Pixel samples for the node's next unit. Shrinks when little is left (`remaining` over `workers` in the
     // whole cluster), so that all finish together: never more than half of an equal part.

@@ -15,6 +15,7 @@ class BlockSet {
     bool covers(const frame::SampleBlock& block) const;
     std::vector<frame::SampleBlock> missing_in(const frame::SampleBlock& block) const;  // ascending
     std::uint64_t sample_count() const { return sample_count_; }
+    const std::set<frame::SampleBlock>& blocks() const { return blocks_; }  // ascending
 
   private:
     std::set<frame::SampleBlock> blocks_;  // ordered by first sample

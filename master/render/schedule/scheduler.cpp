@@ -6,19 +6,27 @@ namespace tessera::master {
 
 using frame::SampleBlock;
 
+namespace {
+
+std::uint32_t workers_of(std::span<const NodeCapacity> nodes) {
+    std::uint32_t workers = 0;
+    for (const NodeCapacity& node : nodes) workers += node.workers;
+    return workers;
+}
+
+}  // namespace
+
 Scheduler::Scheduler(const PlanSettings& plan, ViewId view, std::uint64_t revision, Version version,
                      UnitId first_unit, std::optional<TimePoint> deadline)
     : plan_(plan),
       view_(view),
       revision_(revision),
       version_(version),
-      next_unit_(first_unit.value),
       deadline_(deadline),
-      ledger_(plan_.tiles().size()),
-      tiles_without_samples_(static_cast<std::uint32_t>(plan_.tiles().size())) {}
+      ledger_(plan_.tiles(), first_unit) {}
 
-view::WorkUnit Scheduler::make_unit(const Plan::Chunk& chunk) {
-    return {.id = UnitId{next_unit_++},
+view::WorkUnit Scheduler::make_unit(const Plan::Chunk& chunk) const {
+    return {.id = ledger_.next_unit(),
             .view = view_,
             .revision = revision_,
             .version = version_,
@@ -26,12 +34,13 @@ view::WorkUnit Scheduler::make_unit(const Plan::Chunk& chunk) {
             .block = chunk.block};
 }
 
+// ---- dealing ----
+
 std::vector<Assignment> Scheduler::assign(std::span<const NodeCapacity> nodes, const Balancer& balancer,
                                           TimePoint now) {
     std::vector<Assignment> assignments;
     if (closed_) return assignments;
-    std::uint32_t workers = 0;
-    for (const NodeCapacity& node : nodes) workers += node.workers;
+    release_claims_of_others(nodes);
     std::vector<NodeCapacity> capacities(nodes.begin(), nodes.end());
     // One unit per turn, so that one node's prefetch does not empty the plan while another starves.
     for (bool dealt = true; dealt;) {
@@ -39,9 +48,9 @@ std::vector<Assignment> Scheduler::assign(std::span<const NodeCapacity> nodes, c
         for (NodeCapacity& node : capacities) {
             if (node.free_slots == 0) continue;
             cut_round_for_deadline(nodes, balancer, now);
-            const auto splits = static_cast<std::uint32_t>(nodes.size());
-            auto assignment = deal(node, balancer, workers, splits, now);
-            if (!assignment && node.in_flight == 0) assignment = duplicate(node.node, balancer, now);
+            auto assignment = deal(node, nodes, balancer, now);
+            if (!assignment && node.in_flight < node.workers)
+                assignment = duplicate(node.node, nodes, balancer, now);
             if (!assignment) continue;
             --node.free_slots;
             ++node.in_flight;
@@ -52,53 +61,152 @@ std::vector<Assignment> Scheduler::assign(std::span<const NodeCapacity> nodes, c
     return assignments;
 }
 
-std::optional<Assignment> Scheduler::deal(const NodeCapacity& node, const Balancer& balancer,
-                                          std::uint32_t workers, std::uint32_t splits, TimePoint now) {
+std::optional<Assignment> Scheduler::deal(const NodeCapacity& node, std::span<const NodeCapacity> nodes,
+                                          const Balancer& balancer, TimePoint now) {
+    while (auto chunk = next_chunk(node, nodes, balancer)) {
+        // Film that was considered lost may have arrived after all.
+        const std::vector<SampleBlock> gaps = ledger_.samples(chunk->tile).missing_in(chunk->block);
+        if (gaps.size() != 1 || gaps.front() != chunk->block) {
+            for (const SampleBlock& gap : gaps) {
+                Plan::Chunk part = *chunk;
+                part.block = gap;
+                plan_.give_back(part);
+            }
+            continue;
+        }
+        const view::WorkUnit unit = make_unit(*chunk);
+        ++(chunk->again ? reissued_ : issued_);
+        ledger_.deal(unit, chunk->tile, std::move(chunk->trouble), node.node, now);
+        return Assignment{node.node, unit};
+    }
+    return std::nullopt;
+}
+
+std::optional<Plan::Chunk> Scheduler::next_chunk(const NodeCapacity& node,
+                                                 std::span<const NodeCapacity> nodes,
+                                                 const Balancer& balancer) {
+    const std::uint32_t workers = workers_of(nodes);
     const std::uint64_t samples = balancer.unit_samples(node.node, plan_.remaining_samples(), workers);
     const std::size_t pixels =
         std::max<std::size_t>(1, plan_.tiles().empty() ? 1 : plan_.tiles()[0].pixel_count());
-    auto chunk = plan_.next(std::max<std::uint64_t>(1, samples / pixels), splits);
-    // Film that was considered lost may have arrived after all.
-    while (chunk && ledger_[chunk->tile].covers(chunk->block)) {
-        chunk = plan_.next(std::max<std::uint64_t>(1, samples / pixels), splits);
-    }
-    if (!chunk) return std::nullopt;
-    const view::WorkUnit unit = make_unit(*chunk);
-    ++(chunk->again ? counts_.reissued : counts_.issued);
-    outstanding_[unit.id] = {unit, chunk->tile, {{node.node, now}}};
-    return Assignment{node.node, unit};
+    const std::uint64_t count = std::max<std::uint64_t>(1, samples / pixels);
+    // What failed on a node goes to another one, unless there is none.
+    const auto may_go = [&](const Plan::Chunk& chunk) {
+        return !chunk.trouble || !chunk.trouble->has_failed_on(node.node) ||
+               std::all_of(nodes.begin(), nodes.end(), [&](const NodeCapacity& other) {
+                   return chunk.trouble->has_failed_on(other.node);
+               });
+    };
+    if (auto chunk = plan_.next_returned(count, may_go)) return chunk;
+    const auto node_count = static_cast<std::uint32_t>(nodes.size());
+    if (auto chunk = plan_.next(node.node, count, node_count, workers)) return chunk;
+    if (!take_over_a_claim(node, nodes, balancer)) return std::nullopt;
+    return plan_.next(node.node, count, node_count, workers);
 }
 
-std::optional<Assignment> Scheduler::duplicate(NodeId node, const Balancer& balancer, TimePoint now) {
-    const auto expected_seconds = [&](NodeId who, const Outstanding& entry) {
-        const double rate = balancer.rate(who);
-        const auto samples = static_cast<double>(entry.unit.block.count() * entry.unit.tile.pixel_count());
-        return rate > 0.0 ? samples / rate : 0.0;
-    };
-    // When each holder will have finished all its units; overdue work counts as never.
-    std::map<NodeId, double> until_done;
-    for (const auto& [id, entry] : outstanding_) {
-        for (const auto& [holder, since] : entry.holders) {
-            const double expected = expected_seconds(holder, entry);
-            until_done[holder] += expected;
-            if (seconds(now - since) > 3.0 * until_done[holder] + 0.05) until_done[holder] = 1e9;
+// No samples are left to claim: an idle node takes a part of the claim that would be finished last, if that is sooner.
+bool Scheduler::take_over_a_claim(const NodeCapacity& node, std::span<const NodeCapacity> nodes,
+                                  const Balancer& balancer) {
+    // Each part costs the network one more film: the last units are not split, but dealt twice if they are late.
+    const double min_seconds = 2.0 * balancer.unit_seconds();
+    NodeId victim;
+    double latest = 0.0;
+    for (const auto& [holder, claim] : plan_.claims()) {
+        const auto capacity = std::find_if(nodes.begin(), nodes.end(), [holder = holder](const auto& other) {
+            return other.node == holder;
+        });
+        if (holder == node.node || capacity == nodes.end()) continue;
+        const auto left = static_cast<double>(claim.left() * plan_.tiles()[claim.tile].pixel_count());
+        const double duration = left / (balancer.assumed_rate(holder) * capacity->workers);
+        const double mine = 0.5 * left / (balancer.assumed_rate(node.node) * node.workers);
+        if (duration < min_seconds || mine > duration || duration <= latest) continue;
+        latest = duration;
+        victim = holder;
+    }
+    if (latest == 0.0) return false;
+    plan_.take_over(node.node, victim);
+    return true;
+}
+
+// Nodes that may not take units any more: they have left, or hold another version of the scene.
+void Scheduler::release_claims_of_others(std::span<const NodeCapacity> nodes) {
+    std::vector<NodeId> released;
+    for (const auto& [holder, claim] : plan_.claims()) {
+        if (std::none_of(nodes.begin(), nodes.end(),
+                         [holder = holder](const NodeCapacity& node) { return node.node == holder; }))
+            released.push_back(holder);
+    }
+    for (const NodeId node : released) plan_.release_claim(node);
+}
+
+// When each holder will have rendered its units, in s from now, as far as rates tell: it renders them in the order in
+// which it got them, and sends the film of consecutive ones together after the last.
+class Scheduler::Forecast {
+  public:
+    static constexpr double Never = 1e9;
+
+    Forecast(const UnitLedger& ledger, std::span<const NodeCapacity> nodes, const Balancer& balancer,
+             TimePoint now) {
+        std::map<NodeId, std::uint32_t> workers;
+        for (const NodeCapacity& node : nodes) workers[node.node] = std::max(1u, node.workers);
+        for (const auto& [id, unit] : ledger.open()) {
+            for (const auto& [holder, since] : unit.holders) {
+                const double expected = expected_seconds(balancer, holder, unit.unit);
+                Holder& all = holders_[holder];
+                const double start = std::max(all.busy_until, -seconds(now - since));
+                all.busy_until = start + expected / std::max(1u, workers[holder]);
+                all.last_end = std::max(all.last_end, start + expected);
+                all.total += expected;
+                ends_[{id, holder}] = start + expected;
+            }
         }
     }
-    auto best = outstanding_.end();
+
+    // Overdue work counts as never.
+    double end(UnitId unit, NodeId holder) const {
+        const Holder& all = holders_.at(holder);
+        const bool is_overdue = -all.last_end > 2.0 * all.total + 0.05;
+        return is_overdue ? Never : ends_.at({unit, holder});
+    }
+
+    static double expected_seconds(const Balancer& balancer, NodeId node, const view::WorkUnit& unit) {
+        const double rate = balancer.rate(node);
+        const auto samples = static_cast<double>(unit.block.count() * unit.tile.pixel_count());
+        return rate > 0.0 ? samples / rate : 0.0;
+    }
+
+  private:
+    struct Holder {
+        double busy_until = -Never, last_end = -Never, total = 0.0;
+    };
+    std::map<NodeId, Holder> holders_;
+    std::map<std::pair<UnitId, NodeId>, double> ends_;
+};
+
+std::optional<Assignment> Scheduler::duplicate(NodeId node, std::span<const NodeCapacity> nodes,
+                                               const Balancer& balancer, TimePoint now) {
+    const Forecast forecast(ledger_, nodes, balancer, now);
+    const view::WorkUnit* best = nullptr;
     double latest = 0.0;
-    for (auto entry = outstanding_.begin(); entry != outstanding_.end(); ++entry) {
-        if (entry->second.holders.size() != 1 || entry->second.holders.contains(node)) continue;
-        const double done = until_done[entry->second.holders.begin()->first];
-        // Take the unit that the slowest holder was given last: the least likely to have been started.
-        if (done > expected_seconds(node, entry->second) && done >= latest) {
-            best = entry;
+    for (const auto& [id, unit] : ledger_.open()) {
+        const bool has_failed_here = unit.trouble && unit.trouble->has_failed_on(node);
+        if (unit.is_covered || unit.holders.contains(node) || has_failed_here) continue;
+        double done = Forecast::Never;  // by the first of its holders
+        for (const auto& [holder, since] : unit.holders) done = std::min(done, forecast.end(id, holder));
+        if (unit.holders.size() > 1 && done < Forecast::Never) continue;
+        // Take the unit that the slowest holder was given last: the least likely to have been started. It splits the
+        // film of its claim in three: that has to gain a unit's time.
+        const double mine = Forecast::expected_seconds(balancer, node, unit.unit);
+        if (done > mine + balancer.unit_seconds() && done >= latest) {
+            best = &unit.unit;
             latest = done;
         }
     }
-    if (best == outstanding_.end()) return std::nullopt;
-    ++counts_.reissued;
-    best->second.holders.emplace(node, now);
-    return Assignment{node, best->second.unit};
+    if (best == nullptr) return std::nullopt;
+    ++reissued_;
+    const view::WorkUnit unit = *best;
+    ledger_.deal_again(unit.id, node, now);
+    return Assignment{node, unit};
 }
 
 void Scheduler::cut_round_for_deadline(std::span<const NodeCapacity> nodes, const Balancer& balancer,
@@ -113,81 +221,76 @@ void Scheduler::cut_round_for_deadline(std::span<const NodeCapacity> nodes, cons
     }
 }
 
-std::vector<Cancellation> Scheduler::merged(UnitId unit, std::uint32_t tile, const SampleBlock& block) {
-    std::vector<Cancellation> cancellations;
-    BlockSet& ledger = ledger_.at(tile);
-    const std::uint64_t before = ledger.sample_count();
-    ledger.insert(block);
-    if (before == 0) --tiles_without_samples_;
-    merged_samples_ += (ledger.sample_count() - before) * plan_.tiles()[tile].pixel_count();
-    const auto entry = outstanding_.find(unit);
-    if (entry == outstanding_.end() || !ledger.covers(entry->second.unit.block)) return cancellations;
-    ++counts_.merged;
-    if (entry->second.holders.size() > 1) {
-        for (const auto& [holder, since] : entry->second.holders) cancellations.push_back({holder, unit});
-    }
-    outstanding_.erase(entry);
-    return cancellations;
+// ---- ends ----
+
+bool Scheduler::end(UnitId unit, NodeId node, Fate fate) {
+    const bool held = ledger_.end(unit, node, fate);
+    collect_returned();
+    return held;
 }
 
-void Scheduler::drop(Units::iterator entry, NodeId node, Loss loss) {
-    entry->second.holders.erase(node);
-    ++(loss == Loss::Lost ? counts_.lost : counts_.cancelled);
-    if (!entry->second.holders.empty()) return;
-    if (!closed_) {
-        for (const SampleBlock& gap : ledger_[entry->second.tile].missing_in(entry->second.unit.block)) {
-            plan_.give_back({entry->second.tile, gap});
+void Scheduler::end_film(NodeId node, std::uint32_t tile, const SampleBlock& block, Fate fate) {
+    ledger_.end_film(node, tile, block, fate);
+    collect_returned();
+}
+
+bool Scheduler::failed(UnitId unit, NodeId node, UnitTrouble::Kind kind, const std::string& message) {
+    const bool held = ledger_.fail(unit, node, kind, message);
+    collect_returned();
+    return held;
+}
+
+void Scheduler::node_gone(NodeId node, std::uint32_t workers) {
+    plan_.release_claim(node);
+    ledger_.node_gone(node, workers, "nodes vanished while they rendered it");
+    collect_returned();
+}
+
+void Scheduler::collect_returned() {
+    for (UnitLedger::Returned& returned : ledger_.take_returned()) {
+        if (closed_) continue;
+        if (returned.trouble && returned.trouble->is_settled()) {
+            ledger_.blame_samples(returned.trouble);
+            // Later samples of the tile would fail on the next nodes, too.
+            give_up({returned.tile, returned.block, returned.trouble->message});
+        } else {
+            plan_.give_back(
+                {.tile = returned.tile, .block = returned.block, .trouble = std::move(returned.trouble)});
         }
     }
-    outstanding_.erase(entry);
 }
 
-bool Scheduler::released(UnitId unit, NodeId node, Loss loss) {
-    const auto entry = outstanding_.find(unit);
-    if (entry == outstanding_.end() || !entry->second.holders.contains(node)) return false;
-    drop(entry, node, loss);
-    return true;
+void Scheduler::give_up(const TileFailure& tile) {
+    if (plan_.is_closed(tile.tile)) return;
+    plan_.close_tile(tile.tile);
+    failed_tiles_.push_back(tile);
 }
 
-void Scheduler::node_gone(NodeId node) {
-    for (const UnitId unit : held_by(node)) released(unit, node, Loss::Lost);
-}
-
-std::vector<UnitId> Scheduler::held_by(NodeId node) const {
-    std::vector<UnitId> units;
-    for (const auto& [id, entry] : outstanding_) {
-        if (entry.holders.contains(node)) units.push_back(id);
-    }
-    return units;
-}
-
-std::optional<view::WorkUnit> Scheduler::find(UnitId unit) const {
-    const auto entry = outstanding_.find(unit);
-    if (entry == outstanding_.end()) return std::nullopt;
-    return entry->second.unit;
+std::uint32_t Scheduler::tiles_without_samples() const {
+    const auto failed = std::count_if(
+        failed_tiles_.begin(), failed_tiles_.end(),
+        [&](const TileFailure& tile) { return ledger_.samples(tile.tile).sample_count() == 0; });
+    return ledger_.tiles_without_samples() - static_cast<std::uint32_t>(failed);
 }
 
 std::vector<Cancellation> Scheduler::revise(std::uint64_t revision) {
-    std::vector<Cancellation> cancellations;
-    while (!outstanding_.empty()) {
-        const auto entry = outstanding_.begin();
-        const std::map<NodeId, TimePoint> holders = entry->second.holders;
-        for (auto holder = holders.begin(); holder != holders.end(); ++holder) {
-            cancellations.push_back({holder->first, entry->first});
-            drop(entry, holder->first, Loss::Released);  // the last one ends the entry
-        }
-    }
+    const std::vector<Cancellation> cancellations = ledger_.end_all();
+    collect_returned();
     revision_ = revision;
     return cancellations;
 }
 
 std::vector<Cancellation> Scheduler::cancel_everything() {
     closed_ = true;
-    std::vector<Cancellation> cancellations;
-    for (const auto& [id, entry] : outstanding_) {
-        for (const auto& [holder, since] : entry.holders) cancellations.push_back({holder, id});
-    }
-    return cancellations;
+    return ledger_.holders();
+}
+
+session::UnitCounts Scheduler::counts() const {
+    session::UnitCounts counts = ledger_.counts();
+    counts.issued = issued_;
+    counts.reissued = reissued_;
+    if (closed_ || complete()) counts.cancelled += ledger_.in_flight();
+    return counts;
 }
 
 void add(session::UnitCounts& to, const session::UnitCounts& from) {

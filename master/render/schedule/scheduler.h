@@ -1,14 +1,14 @@
 #pragma once
 
-#include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "master/peers/node_capacity.h"
 #include "master/render/schedule/balancer.h"
-#include "master/render/schedule/block_set.h"
 #include "master/render/schedule/plan.h"
+#include "master/render/schedule/unit_ledger.h"
 #include "mediator/view/work_unit.h"
 
 namespace tessera::master {
@@ -17,33 +17,51 @@ struct Assignment {
     NodeId node;
     view::WorkUnit unit;
 };
-struct Cancellation {
-    NodeId node;
-    UnitId unit;
+
+// A tile without (further) samples: no node could render the block.
+struct TileFailure {
+    std::uint32_t tile = 0;
+    frame::SampleBlock block;
+    std::string message;  // the latest failure
 };
 
 // Deals the units of one frame: (state, event, now) -> actions, without sockets or threads. Every chunk of the plan
-// is dealt, merged or given back, as recorded per tile. The last units are dealt twice when a node is idle (end-game
-// duplication): the first result wins, the other holder's unit is cancelled.
+// is dealt, merged or given back, as recorded in the ledger. The last units are dealt twice when a worker is idle
+// (end-game duplication): the first result wins, the other holder's unit is cancelled.
 class Scheduler {
   public:
     // `first_unit` and later ids are this scheduler's alone.
     Scheduler(const PlanSettings& plan, ViewId view, std::uint64_t revision, Version version,
               UnitId first_unit, std::optional<TimePoint> deadline);
 
+    // `nodes`: all that could take units of this pass, also those without a free slot.
     std::vector<Assignment> assign(std::span<const NodeCapacity> nodes, const Balancer& balancer,
                                    TimePoint now);
 
-    // Film of `block` of `tile` is merged; `unit` may be unknown (late, or of another holder). Cancels units of other
-    // holders that are no longer needed.
-    std::vector<Cancellation> merged(UnitId unit, std::uint32_t tile, const frame::SampleBlock& block);
+    // ---- film: admit() when it arrives, then merged() or end() ----
+    Admission admit(NodeId node, const ArrivingFilm& film) { return ledger_.admit(node, film); }
+    // Film of `block` of `tile` is merged. Returns units of other holders that are no longer needed.
+    std::vector<Cancellation> merged(NodeId node, std::uint32_t tile, const frame::SampleBlock& block) {
+        return ledger_.arrived(node, tile, block);
+    }
+    // Film that existed before the pass began.
+    void restored(std::uint32_t tile, const frame::SampleBlock& block) { (void)merged({}, tile, block); }
 
-    // The holder will send no (more) film of the unit: missing samples go back to the plan. False: unknown.
-    enum class Loss { Released, Lost };
-    bool released(UnitId unit, NodeId node, Loss loss);
-    void node_gone(NodeId node);
-    std::vector<UnitId> held_by(NodeId node) const;
-    std::optional<view::WorkUnit> find(UnitId unit) const;
+    // The node will send no (more) film of the unit: missing samples go back to the plan. False: it does not hold it.
+    bool end(UnitId unit, NodeId node, Fate fate);
+    // The same for all units of which this film of the node has samples: it was admitted, but not merged.
+    void end_film(NodeId node, std::uint32_t tile, const frame::SampleBlock& block, Fate fate);
+    // The node could not render the unit. A tile that fails on two nodes is given up: see failed_tiles().
+    bool failed(UnitId unit, NodeId node, UnitTrouble::Kind kind, const std::string& message);
+    // `workers`: how many units it may have been rendering when it vanished; 0: it left in order.
+    void node_gone(NodeId node, std::uint32_t workers);
+    std::vector<UnitId> held_by(NodeId node) const { return ledger_.held_by(node); }
+    const UnitLedger& ledger() const { return ledger_; }
+
+    // Failures on nodes that have been explained since the last call: by another node's success, or as the tile's fault.
+    std::vector<UnitLedger::Explained> take_explained() { return ledger_.take_explained(); }
+    const std::vector<TileFailure>& failed_tiles() const { return failed_tiles_; }
+    void give_up(const TileFailure& tile);  // gets no (more) samples
 
     // The view has a new revision: units in flight are given back, to be dealt again under it.
     std::vector<Cancellation> revise(std::uint64_t revision);
@@ -56,44 +74,41 @@ class Scheduler {
     // Samples from this one on are not dealt until the limit is raised; a power of two. paused(): all before
     // it is merged.
     void hold_at(std::uint64_t sample) { plan_.hold_at(sample); }
-    bool paused() const { return plan_.paused() && outstanding_.empty(); }
+    bool paused() const { return plan_.paused() && ledger_.is_idle(); }
 
-    bool complete() const { return plan_.exhausted() && outstanding_.empty(); }
-    bool idle() const { return outstanding_.empty(); }
+    bool complete() const { return plan_.exhausted() && ledger_.is_idle(); }
+    bool idle() const { return ledger_.is_idle(); }
     const std::vector<Rect>& tiles() const { return plan_.tiles(); }
-    std::uint64_t merged_samples() const { return merged_samples_; }  // pixel samples
-    std::uint32_t tiles_without_samples() const { return tiles_without_samples_; }
-    const session::UnitCounts& counts() const { return counts_; }
-    void count_duplicate() { ++counts_.duplicate; }
-    void count_refused() { ++counts_.refused; }
+    std::uint64_t merged_samples() const { return ledger_.arrived_samples(); }  // pixel samples
+    // Those that still may get some.
+    std::uint32_t tiles_without_samples() const;
+    // Once the pass is complete or cancelled, units in flight count as cancelled.
+    session::UnitCounts counts() const;
 
   private:
-    struct Outstanding {
-        view::WorkUnit unit;
-        std::uint32_t tile = 0;
-        std::map<NodeId, TimePoint> holders;  // and when it was dealt
-    };
-    using Units = std::map<UnitId, Outstanding>;
-
-    view::WorkUnit make_unit(const Plan::Chunk& chunk);
-    std::optional<Assignment> deal(const NodeCapacity& node, const Balancer& balancer, std::uint32_t workers,
-                                   std::uint32_t splits, TimePoint now);
-    std::optional<Assignment> duplicate(NodeId node, const Balancer& balancer, TimePoint now);
+    view::WorkUnit make_unit(const Plan::Chunk& chunk) const;
+    std::optional<Assignment> deal(const NodeCapacity& node, std::span<const NodeCapacity> nodes,
+                                   const Balancer& balancer, TimePoint now);
+    std::optional<Plan::Chunk> next_chunk(const NodeCapacity& node, std::span<const NodeCapacity> nodes,
+                                          const Balancer& balancer);
+    bool take_over_a_claim(const NodeCapacity& node, std::span<const NodeCapacity> nodes,
+                           const Balancer& balancer);
+    class Forecast;
+    std::optional<Assignment> duplicate(NodeId node, std::span<const NodeCapacity> nodes,
+                                        const Balancer& balancer, TimePoint now);
+    void release_claims_of_others(std::span<const NodeCapacity> nodes);
     void cut_round_for_deadline(std::span<const NodeCapacity> nodes, const Balancer& balancer, TimePoint now);
-    void drop(Units::iterator unit, NodeId node, Loss loss);
+    void collect_returned();
 
     Plan plan_;
     ViewId view_;
     std::uint64_t revision_;
     Version version_;
-    std::uint64_t next_unit_;
     std::optional<TimePoint> deadline_;
     bool closed_ = false;
-    Units outstanding_;
-    std::vector<BlockSet> ledger_;  // per tile
-    std::uint64_t merged_samples_ = 0;
-    std::uint32_t tiles_without_samples_ = 0;
-    session::UnitCounts counts_;
+    UnitLedger ledger_;
+    std::vector<TileFailure> failed_tiles_;
+    std::uint64_t issued_ = 0, reissued_ = 0;
 };
 
 void add(session::UnitCounts& to, const session::UnitCounts& from);

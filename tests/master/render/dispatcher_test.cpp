@@ -64,9 +64,23 @@ struct DispatcherTest : testing::Test {
         auto capacities = dispatcher.capacities();
         dispatcher.deal(view, capacities, now);
     }
-    MergeReport report(const view::WorkUnit& unit, FrameAssembler::Outcome outcome, net::PeerId peer) const {
-        MergeReport report{.peer = peer, .unit = unit.id, .view = unit.view, .revision = unit.revision};
+    static wire::FilmHead head(const view::WorkUnit& unit) {
+        return {unit.id, unit.view, unit.revision, unit.version, unit.tile, unit.block};
+    }
+    bool admit(std::uint64_t node, const wire::FilmHead& film) {
+        return dispatcher.admit(*nodes.find(NodeId{node}), film, 1000, now).has_value();
+    }
+    std::string quarantine_reason(std::uint64_t node) {
+        const auto* entry = dispatcher.quarantine().find(nodes.find(NodeId{node})->identity(), now);
+        return entry == nullptr ? "" : entry->reason;
+    }
+    MergeReport report(const view::WorkUnit& unit, FrameAssembler::Outcome outcome,
+                       std::uint64_t node) const {
+        MergeReport report{
+            .node = NodeId{node}, .unit = unit.id, .view = unit.view, .revision = unit.revision};
         report.block = unit.block;
+        report.units = 1;
+        report.bytes = 1000;
         report.result.outcome = outcome;
         return report;
     }
@@ -93,9 +107,8 @@ TEST_F(DispatcherTest, ContradictingFilmIsReportedWithAReplayCommand) {
     begin(view(8, 8));
     deal(ViewId{8});
     const view::WorkUnit unit = channel.all<wire::Work>().at(0).unit;
-    EXPECT_EQ(dispatcher.take(report(unit, FrameAssembler::Outcome::Merged, 101), now),
-              Dispatcher::Taken::New);
-    EXPECT_EQ(dispatcher.take(report(unit, FrameAssembler::Outcome::Conflict, 102), now),
+    EXPECT_EQ(dispatcher.take(report(unit, FrameAssembler::Outcome::Merged, 1), now), Dispatcher::Taken::New);
+    EXPECT_EQ(dispatcher.take(report(unit, FrameAssembler::Outcome::Conflict, 2), now),
               Dispatcher::Taken::Known);
     ASSERT_EQ(events.size(), 1u);
     EXPECT_NE(events[0].find("second: node-2"), std::string::npos) << events[0];
@@ -128,18 +141,116 @@ TEST_F(DispatcherTest, UnitsOfALostNodeGoToTheNext) {
     EXPECT_NE(work[1].unit.id, sent);
 }
 
-TEST_F(DispatcherTest, FailedUnitNamesItsPass) {
+wire::UnitReleased failed(UnitId unit) {
+    return {.unit = unit, .reason = wire::ReleaseReason::Failed, .message = "device lost"};
+}
+
+TEST_F(DispatcherTest, AUnitThatFailsGoesToAnotherNode) {
     NodeRecord& node = add_node(1, 1);
     begin(view(8, 8));
-    begin(view(16, 8));
-    deal(ViewId{16});
+    deal(ViewId{8});
     const view::WorkUnit unit = channel.all<wire::Work>().at(0).unit;
-    const auto failure = dispatcher.released(
-        node, {.unit = unit.id, .reason = wire::ReleaseReason::Failed, .message = "no memory"}, now);
-    ASSERT_TRUE(failure);
-    EXPECT_EQ(failure->pass, ViewId{16});
-    EXPECT_EQ(failure->message, "no memory");
+    dispatcher.released(node, failed(unit.id), now);
     EXPECT_EQ(dispatcher.counts().refused, 1u);
+    dispatcher.released(node, failed(unit.id), now);
+    EXPECT_EQ(dispatcher.counts().refused, 1u) << "it does not hold the unit any more";
+    add_node(2, 1);
+    deal(ViewId{8});
+    const auto work = channel.all<wire::Work>();
+    EXPECT_TRUE(std::any_of(work.begin() + 1, work.end(), [&](const wire::Work& other) {
+        return other.unit.block == unit.block && nodes.find(NodeId{2})->pending.contains(other.unit.id);
+    }));
+}
+
+// What others manage is the node's fault: it gets no more work.
+TEST_F(DispatcherTest, ANodeThatFailsWhatOthersManageIsQuarantined) {
+    add_node(1, 3);
+    begin(view(8, 16));
+    deal(ViewId{8});
+    for (const wire::Work& work : channel.all<wire::Work>())
+        dispatcher.released(*nodes.find(NodeId{1}), failed(work.unit.id), now);
+    add_node(2, 3);
+    channel.sent.clear();
+    deal(ViewId{8});
+    EXPECT_TRUE(nodes.find(NodeId{1})->pending.empty()) << "three failures are unexplained";
+    const auto work = channel.all<wire::Work>();
+    ASSERT_EQ(work.size(), 3u);
+    for (const wire::Work& message : work) {
+        EXPECT_EQ(quarantine_reason(1), "");
+        ASSERT_TRUE(admit(2, head(message.unit)));
+        MergeReport merged = report(message.unit, FrameAssembler::Outcome::Merged, 2);
+        const auto& tiles = dispatcher.find(ViewId{8})->tiles();
+        merged.result.tile = static_cast<std::uint32_t>(
+            std::find(tiles.begin(), tiles.end(), message.unit.tile) - tiles.begin());
+        dispatcher.take(merged, now);
+    }
+    EXPECT_EQ(quarantine_reason(1), "it failed what another node rendered: device lost");
+    EXPECT_EQ(dispatcher.prospects(view(8, 16), {Scene}).suitable, 1u);
+    EXPECT_TRUE(dispatcher.release_from_quarantine("node-1", now));
+    EXPECT_EQ(dispatcher.prospects(view(8, 16), {Scene}).suitable, 2u);
+}
+
+// Failures that were never dealt to it say nothing, about anything.
+TEST_F(DispatcherTest, FailuresOfForeignUnitsAreIgnored) {
+    add_node(1, 1);
+    NodeRecord& liar = add_node(2, 0);
+    begin(view(8, 8));
+    deal(ViewId{8});
+    for (std::uint64_t unit = 0; unit < 100; ++unit) dispatcher.released(liar, failed(UnitId{unit}), now);
+    EXPECT_EQ(dispatcher.counts().refused, 0u);
+    EXPECT_TRUE(dispatcher.find(ViewId{8})->failed_tiles().empty());
+    EXPECT_TRUE(events.empty());
+}
+
+TEST_F(DispatcherTest, FilmThatWasNotAskedForIsRefusedAndItsSenderQuarantined) {
+    add_node(1, 1);
+    NodeRecord& liar = add_node(2, 0);
+    begin(view(8, 8));
+    begin(view(16, 8));
+    deal(ViewId{8});
+    const view::WorkUnit unit = channel.all<wire::Work>().at(0).unit;
+    wire::FilmHead film = head(unit);
+    EXPECT_FALSE(admit(2, film));
+    film.view = ViewId{16};
+    EXPECT_FALSE(admit(2, film)) << "a unit of another view";
+    film = head(unit);
+    film.revision = 7;
+    EXPECT_FALSE(admit(2, film));
+    EXPECT_EQ(dispatcher.refused_film(), 2u) << "film of an old revision is only late";
+    EXPECT_EQ(quarantine_reason(2), "");
+    film = head(unit);
+    film.unit = UnitId{1u << 30};
+    EXPECT_FALSE(admit(2, film));
+    EXPECT_NE(quarantine_reason(2), "");
+    dispatcher.send_film_taken();
+    ASSERT_EQ(channel.all<wire::FilmTaken>().size(), 1u);
+    EXPECT_EQ(channel.all<wire::FilmTaken>()[0].bytes, 4000u) << "dropped film leaves room, too";
+    EXPECT_TRUE(admit(1, head(unit)));
+    // Under another number it is the same node.
+    dispatcher.node_gone(liar.id, Dispatcher::Departure::Sudden, now);
+    nodes.remove(NodeId{2});
+    wire::Hello hello{.name = "node-2", .channels = {frame::Channel::Color}};
+    NodeRecord& back = nodes.add(NodeId{3}, 3, 3, "node", std::move(hello), now);
+    dispatcher.joined(back, now);
+    EXPECT_TRUE(back.quarantined);
+    dispatcher.collect_overdue(now + std::chrono::minutes(2));
+    EXPECT_FALSE(back.quarantined);
+}
+
+TEST_F(DispatcherTest, DamagedFilmIsRenderedAgain) {
+    add_node(1, 1);
+    begin(view(8, 8));
+    deal(ViewId{8});
+    const view::WorkUnit unit = channel.all<wire::Work>().at(0).unit;
+    ASSERT_TRUE(admit(1, head(unit)));
+    MergeReport damaged = report(unit, FrameAssembler::Outcome::Misfit, 1);
+    damaged.problem = "malformed message: a mean is not finite";
+    EXPECT_EQ(dispatcher.take(damaged, now), Dispatcher::Taken::Dropped);
+    EXPECT_EQ(dispatcher.counts().refused, 1u);
+    EXPECT_FALSE(dispatcher.find(ViewId{8})->complete());
+    add_node(2, 1);
+    deal(ViewId{8});
+    EXPECT_EQ(channel.all<wire::Work>().back().unit.block, unit.block);
 }
 
 TEST_F(DispatcherTest, ReproducibleWorkGoesToPinnedNodesOnly) {

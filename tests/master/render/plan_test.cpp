@@ -43,25 +43,37 @@ TEST(TileGrid, CoversTheWindowWithoutGapsOrOverlaps) {
 
 class PlanOf : public testing::TestWithParam<session::Policy> {};
 
-// For any chunk sizes and returned chunks, every sample of every tile is dealt exactly once, net.
+// For any nodes, chunk sizes, returned chunks, and claims that are taken over or given up: every sample of every tile is
+// dealt exactly once, net.
 TEST_P(PlanOf, DealsEverySampleOnce) {
     CounterRandom random(11);
     for (const std::uint64_t spp : {1u, 5u, 16u, 100u}) {
         Plan plan({.window = {0, 0, 70, 50}, .tile = 32, .spp = spp, .policy = GetParam(), .first_level = 1});
         std::vector<BlockSet> dealt(plan.tiles().size());
         int returns = 20;
-        while (const auto chunk =
-                   plan.next(1 + random.below(40), 1 + static_cast<std::uint32_t>(random.below(5)))) {
+        const auto any_node = [&] { return NodeId{1 + random.below(4)}; };
+        const auto next = [&]() -> std::optional<Plan::Chunk> {
+            const std::uint64_t count = 1 + random.below(40);
+            if (auto chunk = plan.next_returned(count, [](const Plan::Chunk&) { return true; })) return chunk;
+            return plan.next(any_node(), count, 4, 1 + static_cast<std::uint32_t>(random.below(9)));
+        };
+        for (int misses = 0; misses < 100;) {
+            if (random.below(10) == 0) plan.take_over(any_node(), any_node());
+            if (random.below(20) == 0) plan.release_claim(any_node());
+            const auto chunk = next();
+            if (!chunk) {
+                ++misses;  // another node has the last claim
+                continue;
+            }
+            misses = 0;
             EXPECT_TRUE(chunk->block.is_aligned());
             if (returns > 0 && random.below(4) == 0) {
                 --returns;
                 plan.give_back(*chunk);
                 continue;
             }
-            EXPECT_FALSE(dealt[chunk->tile].covers(chunk->block));
-            const std::uint64_t before = dealt[chunk->tile].sample_count();
+            EXPECT_TRUE(dealt[chunk->tile].missing_in(chunk->block) == std::vector{chunk->block});
             dealt[chunk->tile].insert(chunk->block);
-            EXPECT_EQ(dealt[chunk->tile].sample_count(), before + chunk->block.count());
             if (random.below(50) == 0 && plan.at_round_start()) plan.deal_round_in_eighths();
         }
         EXPECT_TRUE(plan.exhausted());
@@ -74,41 +86,76 @@ INSTANTIATE_TEST_SUITE_P(Policies, PlanOf,
                          testing::Values(session::Policy::Tiled, session::Policy::Cooperative,
                                          session::Policy::Mixed));
 
+PlanSettings two_tiles(session::Policy policy) {
+    return {.window = {0, 0, 64, 32}, .tile = 32, .spp = 16, .policy = policy, .first_level = 4};
+}
+
 TEST(Plan, CooperativeSplitsATileAmongAllNodes) {
-    Plan plan({.window = {0, 0, 64, 32},
-               .tile = 32,
-               .spp = 16,
-               .policy = session::Policy::Cooperative,
-               .first_level = 4});
-    const auto first = plan.next(1000, 4), second = plan.next(1000, 4);
+    Plan plan(two_tiles(session::Policy::Cooperative));
+    const auto first = plan.next(NodeId{1}, 1000, 4, 4), second = plan.next(NodeId{2}, 1000, 4, 4);
     EXPECT_EQ(first->tile, second->tile);
     EXPECT_EQ(first->block.count(), 4u);
     EXPECT_EQ(second->block.first, 4u);
 }
 
 TEST(Plan, TiledGivesATileToOneNode) {
-    Plan plan({.window = {0, 0, 64, 32},
-               .tile = 32,
-               .spp = 16,
-               .policy = session::Policy::Tiled,
-               .first_level = 4});
-    const auto first = plan.next(1000, 4), second = plan.next(1000, 4);
+    Plan plan(two_tiles(session::Policy::Tiled));
+    const auto first = plan.next(NodeId{1}, 1000, 4, 4), second = plan.next(NodeId{2}, 1000, 4, 4);
     EXPECT_NE(first->tile, second->tile);
     EXPECT_EQ(first->block.count(), 16u);
 }
 
+TEST(Plan, MixedSplitsTilesOnlyWhileThereAreFewerThanWorkers) {
+    Plan enough(two_tiles(session::Policy::Mixed)), few(two_tiles(session::Policy::Mixed));
+    EXPECT_EQ(enough.next(NodeId{1}, 1000, 2, 2)->block.count(), 16u);
+    EXPECT_EQ(few.next(NodeId{1}, 1000, 2, 8)->block.count(), 4u);
+}
+
+// A node merges consecutive pieces before it sends them.
+TEST(Plan, PiecesOfAClaimAreConsecutive) {
+    Plan plan(two_tiles(session::Policy::Mixed));
+    const auto tile = plan.next(NodeId{1}, 4, 2, 2)->tile;
+    EXPECT_NE(plan.next(NodeId{2}, 4, 2, 2)->tile, tile);
+    for (const std::uint64_t first : {4u, 8u, 12u}) {
+        const auto piece = plan.next(NodeId{1}, 4, 2, 2);
+        EXPECT_EQ(piece->tile, tile);
+        EXPECT_EQ(piece->block, (SampleBlock{first, 2}));
+    }
+}
+
+TEST(Plan, HalfOfAClaimCanBeTakenOver) {
+    Plan plan(two_tiles(session::Policy::Tiled));
+    (void)plan.next(NodeId{1}, 1, 1, 1);
+    plan.take_over(NodeId{2}, NodeId{1});
+    EXPECT_EQ(plan.next(NodeId{2}, 1000, 2, 2)->block, (SampleBlock{8, 3}));
+    EXPECT_EQ(plan.claims().at(NodeId{1}).end, 8u);
+    plan.take_over(NodeId{3}, NodeId{2});  // has nothing left
+    EXPECT_FALSE(plan.claims().contains(NodeId{3}));
+}
+
+TEST(Plan, AClosedTileGetsNoMoreSamples) {
+    Plan plan({.window = {0, 0, 64, 32}, .tile = 32, .spp = 16, .policy = session::Policy::Tiled});
+    const auto chunk = plan.next(NodeId{1}, 1, 1, 1);
+    plan.give_back(*chunk);
+    plan.close_tile(chunk->tile);
+    std::uint64_t samples = 0;
+    while (const auto next = plan.next(NodeId{1}, 1000, 1, 1)) {
+        EXPECT_NE(next->tile, chunk->tile);
+        samples += next->block.count();
+    }
+    EXPECT_EQ(samples, 16u);
+    EXPECT_TRUE(plan.exhausted());
+    EXPECT_EQ(plan.remaining_samples(), 0u);
+}
+
 TEST(Plan, ARoundInEighthsDealsAllTilesOfOneEighthFirst) {
-    Plan plan({.window = {0, 0, 64, 32},
-               .tile = 32,
-               .spp = 16,
-               .policy = session::Policy::Tiled,
-               .first_level = 4});
+    Plan plan(two_tiles(session::Policy::Tiled));
     ASSERT_TRUE(plan.at_round_start());
     EXPECT_EQ(plan.round_samples(), 64u * 32u * 16u);
     plan.deal_round_in_eighths();
-    EXPECT_EQ(plan.next(1000, 1)->block, (SampleBlock{0, 1}));
-    EXPECT_EQ(plan.next(1000, 1)->block, (SampleBlock{0, 1}));
-    EXPECT_EQ(plan.next(1000, 1)->block, (SampleBlock{2, 1}));
+    EXPECT_EQ(plan.next(NodeId{1}, 1000, 1, 1)->block, (SampleBlock{0, 1}));
+    EXPECT_EQ(plan.next(NodeId{1}, 1000, 1, 1)->block, (SampleBlock{0, 1}));
+    EXPECT_EQ(plan.next(NodeId{1}, 1000, 1, 1)->block, (SampleBlock{2, 1}));
 }
 
 }  // namespace

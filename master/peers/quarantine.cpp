@@ -1,0 +1,48 @@
+#include "master/peers/quarantine.h"
+
+#include <algorithm>
+
+namespace tessera::master {
+
+namespace {
+constexpr std::size_t MaxEntries = 4096;
+}
+
+bool Quarantine::fault(const Key& node, const std::string& reason, TimePoint now) {
+    if (entries_.size() >= MaxEntries && !entries_.contains(node)) {
+        entries_.erase(std::min_element(entries_.begin(), entries_.end(), [](const auto& a, const auto& b) {
+            return a.second.last_fault < b.second.last_fault;
+        }));
+    }
+    Entry& entry = entries_[node];
+    if (now - entry.last_fault > settings_.forgiven_after) entry.faults = 0;
+    if (now - entry.last_fault > 2 * settings_.longest) entry.times = 0;
+    entry.last_fault = now;
+    entry.reason = reason;
+    if (++entry.faults < settings_.fault_limit) return false;
+    // The next fault after its return is enough for another time.
+    entry.faults = settings_.fault_limit - 1;
+    Duration time = settings_.first;
+    for (std::uint32_t i = 0; i < entry.times && time < settings_.longest; ++i) time *= 2;
+    ++entry.times;
+    entry.until = now + std::min(time, settings_.longest);
+    return true;
+}
+
+const Quarantine::Entry* Quarantine::find(const Key& node, TimePoint now) const {
+    const auto entry = entries_.find(node);
+    const bool holds = entry != entries_.end() && entry->second.until && now < *entry->second.until;
+    return holds ? &entry->second : nullptr;
+}
+
+bool Quarantine::release(const std::string& name, TimePoint now) {
+    bool released = false;
+    std::erase_if(entries_, [&](const auto& entry) {
+        const bool is_it = entry.first.second == name && entry.second.until && now < *entry.second.until;
+        released = released || is_it;
+        return is_it;
+    });
+    return released;
+}
+
+}  // namespace tessera::master

@@ -1,0 +1,275 @@
+#include "master/render/schedule/unit_ledger.h"
+
+#include <algorithm>
+
+namespace tessera::master {
+
+using frame::SampleBlock;
+
+namespace {
+
+constexpr std::size_t MaxFormer = 4096;  // units of which film is still admitted after their end
+
+void count(session::UnitCounts& counts, Fate fate) {
+    switch (fate) {
+        case Fate::Merged:
+            ++counts.merged;
+            return;
+        case Fate::Duplicate:
+            ++counts.duplicate;
+            return;
+        case Fate::Cancelled:
+            ++counts.cancelled;
+            return;
+        case Fate::Refused:
+            ++counts.refused;
+            return;
+        case Fate::Lost:
+            ++counts.lost;
+            return;
+    }
+}
+
+bool intersect(const SampleBlock& a, const SampleBlock& b) {
+    return a.contains(b) || b.contains(a);
+}
+
+bool holds_or_held(const UnitLedger::Unit& unit, NodeId node) {
+    return unit.holders.contains(node) ||
+           std::find(unit.past_holders.begin(), unit.past_holders.end(), node) != unit.past_holders.end();
+}
+
+}  // namespace
+
+UnitLedger::UnitLedger(std::vector<Rect> tiles, UnitId first_unit)
+    : tiles_(std::move(tiles)),
+      first_unit_(first_unit),
+      open_of_tile_(tiles_.size()),
+      former_of_tile_(tiles_.size()),
+      arrived_(tiles_.size()),
+      tiles_without_samples_(static_cast<std::uint32_t>(tiles_.size())) {}
+
+// ---- dealing ----
+
+void UnitLedger::hold(UnitId id, Unit& unit, NodeId node, TimePoint now) {
+    unit.holders.emplace(node, now);
+    by_node_[node].insert(id);
+    ++in_flight_;
+}
+
+void UnitLedger::deal(const view::WorkUnit& unit, std::uint32_t tile,
+                      std::shared_ptr<const UnitTrouble> trouble, NodeId node, TimePoint now) {
+    dealt_.push_back({node, tile});
+    Unit& entry = open_[unit.id];
+    entry.unit = unit;
+    entry.tile = tile;
+    entry.trouble = std::move(trouble);
+    open_of_tile_[tile].push_back(unit.id);
+    ++uncovered_;
+    hold(unit.id, entry, node, now);
+}
+
+void UnitLedger::deal_again(UnitId unit, NodeId node, TimePoint now) {
+    const auto entry = open_.find(unit);
+    if (entry == open_.end()) return;
+    dealt_again_[unit].insert(node);
+    hold(unit, entry->second, node, now);
+}
+
+bool UnitLedger::was_dealt_to(NodeId node, UnitId unit) const {
+    if (unit.value < first_unit_.value || unit.value - first_unit_.value >= dealt_.size()) return false;
+    if (dealt_[unit.value - first_unit_.value].node == node) return true;
+    const auto again = dealt_again_.find(unit);
+    return again != dealt_again_.end() && again->second.contains(node);
+}
+
+// ---- film ----
+
+template <class Visit>
+void UnitLedger::for_each_of(NodeId node, std::uint32_t tile, const Visit& visit) {
+    for (const UnitId id : open_of_tile_[tile]) {
+        if (Unit& unit = open_.at(id); holds_or_held(unit, node)) visit(unit);
+    }
+    for (const UnitId id : former_of_tile_[tile]) {
+        if (Unit& unit = former_.at(id); holds_or_held(unit, node)) visit(unit);
+    }
+}
+
+Admission UnitLedger::admit(NodeId node, const ArrivingFilm& film) {
+    if (!was_dealt_to(node, film.unit))
+        return {.problem = "film of a unit that was not dealt to it", .replaceable = {}};
+    const std::uint32_t tile = dealt_[film.unit.value - first_unit_.value].tile;
+    if (film.rect != tiles_[tile])
+        return {.problem = "film of another tile than that of its unit", .replaceable = {}};
+    Admission admission{.problem = {}, .tile = tile, .replaceable = {}};
+    if (arrived_[tile].covers(film.block)) return admission;  // late; it is compared with what is there
+    BlockSet held;
+    for_each_of(node, tile, [&](Unit& unit) {
+        if (unit.unit.version == film.version) held.insert(unit.unit.block);
+    });
+    if (!held.covers(film.block)) {
+        admission.problem = "film of samples, or of a version of the scene, that were not dealt to it";
+        return admission;
+    }
+    for_each_of(node, tile, [&](Unit& unit) {
+        if (!intersect(unit.unit.block, film.block)) return;
+        for (const SampleBlock& part : unit.parts.blocks()) admission.replaceable.insert(part);
+        unit.parts.insert(film.block.contains(unit.unit.block) ? unit.unit.block : film.block);
+    });
+    return admission;
+}
+
+std::vector<Cancellation> UnitLedger::arrived(NodeId node, std::uint32_t tile, const SampleBlock& block) {
+    std::vector<Cancellation> cancellations;
+    BlockSet& there = arrived_.at(tile);
+    const std::uint64_t before = there.sample_count();
+    there.insert(block);
+    if (before == 0) --tiles_without_samples_;
+    arrived_samples_ += (there.sample_count() - before) * tiles_[tile].pixel_count();
+    const std::vector<UnitId> units = open_of_tile_[tile];
+    for (const UnitId id : units) {
+        const auto entry = open_.find(id);
+        Unit& unit = entry->second;
+        const bool was_covered = unit.is_covered;
+        if (!was_covered && there.covers(unit.unit.block)) {
+            unit.is_covered = true;
+            --uncovered_;
+            if (unit.trouble) explain(unit.trouble, true);
+            for (const auto& [holder, since] : unit.holders) {
+                if (holder != node) cancellations.push_back({holder, id});
+            }
+            close(entry, node, Fate::Merged);
+        } else if (was_covered && block.contains(unit.unit.block)) {
+            close(entry, node, Fate::Duplicate);
+        }
+    }
+    forget_former(tile);
+    return cancellations;
+}
+
+// ---- ends ----
+
+// Does nothing if the node does not hold the unit, except that a unit without holders ends.
+void UnitLedger::close(std::map<UnitId, Unit>::iterator entry, NodeId node, Fate fate) {
+    Unit& unit = entry->second;
+    const UnitId id = entry->first;
+    if (unit.holders.erase(node) > 0) {
+        count(counts_, fate);
+        by_node_[node].erase(id);
+        --in_flight_;
+        unit.past_holders.push_back(node);
+    }
+    if (!unit.holders.empty()) return;
+    std::erase(open_of_tile_[unit.tile], id);
+    if (!unit.is_covered) {
+        --uncovered_;
+        for (const SampleBlock& gap : arrived_[unit.tile].missing_in(unit.unit.block))
+            returned_.push_back({unit.tile, gap, unit.trouble});
+        former_of_tile_[unit.tile].push_back(id);
+        former_.emplace(id, std::move(unit));
+        if (former_.size() > MaxFormer) {
+            std::erase(former_of_tile_[former_.begin()->second.tile], former_.begin()->first);
+            former_.erase(former_.begin());
+        }
+    }
+    open_.erase(entry);
+}
+
+void UnitLedger::forget_former(std::uint32_t tile) {
+    std::erase_if(former_of_tile_[tile], [&](UnitId id) {
+        const auto former = former_.find(id);
+        if (!arrived_[tile].covers(former->second.unit.block)) return false;
+        former_.erase(former);
+        return true;
+    });
+}
+
+bool UnitLedger::end(UnitId unit, NodeId node, Fate fate) {
+    const auto entry = open_.find(unit);
+    if (entry == open_.end() || !entry->second.holders.contains(node)) return false;
+    close(entry, node, fate);
+    return true;
+}
+
+void UnitLedger::end_film(NodeId node, std::uint32_t tile, const SampleBlock& block, Fate fate) {
+    const std::vector<UnitId> units = open_of_tile_.at(tile);
+    for (const UnitId id : units) {
+        if (intersect(open_.at(id).unit.block, block)) end(id, node, fate);
+    }
+}
+
+bool UnitLedger::fail(UnitId unit, NodeId node, UnitTrouble::Kind kind, const std::string& message) {
+    const auto entry = open_.find(unit);
+    if (entry == open_.end() || !entry->second.holders.contains(node)) return false;
+    if (!entry->second.is_covered) {
+        std::shared_ptr<const UnitTrouble>& trouble = entry->second.trouble;
+        UnitTrouble more = trouble ? *trouble : UnitTrouble{};
+        more.add(kind, node, message);
+        unexplained_.erase(trouble);
+        trouble = std::make_shared<const UnitTrouble>(std::move(more));
+        if (!trouble->failed_on.empty()) unexplained_.insert(trouble);
+    }
+    close(entry, node, kind == UnitTrouble::Kind::Vanished ? Fate::Lost : Fate::Refused);
+    return true;
+}
+
+void UnitLedger::node_gone(NodeId node, std::uint32_t rendering, const std::string& message) {
+    const std::vector<UnitId> units = held_by(node);  // ids ascend in the order of dealing
+    for (std::size_t i = 0; i < units.size(); ++i) {
+        if (i < rendering) {
+            fail(units[i], node, UnitTrouble::Kind::Vanished, message);
+        } else {
+            end(units[i], node, Fate::Lost);
+        }
+    }
+    by_node_.erase(node);
+}
+
+std::vector<Cancellation> UnitLedger::end_all() {
+    const std::vector<Cancellation> all = holders();
+    for (const Cancellation& holder : all) end(holder.unit, holder.node, Fate::Cancelled);
+    former_.clear();
+    for (auto& units : former_of_tile_) units.clear();
+    return all;
+}
+
+// ---- failures ----
+
+void UnitLedger::explain(const std::shared_ptr<const UnitTrouble>& trouble, bool nodes_are_to_blame) {
+    if (unexplained_.erase(trouble) == 0) return;
+    for (const NodeId node : trouble->failed_on)
+        explained_.push_back({node, nodes_are_to_blame, trouble->message});
+}
+
+void UnitLedger::blame_samples(const std::shared_ptr<const UnitTrouble>& trouble) {
+    explain(trouble, false);
+}
+
+std::uint32_t UnitLedger::unexplained_failures(NodeId node) const {
+    return static_cast<std::uint32_t>(std::count_if(
+        unexplained_.begin(), unexplained_.end(),
+        [&](const std::shared_ptr<const UnitTrouble>& trouble) { return trouble->has_failed_on(node); }));
+}
+
+// ---- queries ----
+
+const UnitLedger::Unit* UnitLedger::find(UnitId unit) const {
+    const auto entry = open_.find(unit);
+    return entry == open_.end() ? nullptr : &entry->second;
+}
+
+std::vector<Cancellation> UnitLedger::holders() const {
+    std::vector<Cancellation> all;
+    for (const auto& [id, unit] : open_) {
+        for (const auto& [node, since] : unit.holders) all.push_back({node, id});
+    }
+    return all;
+}
+
+std::vector<UnitId> UnitLedger::held_by(NodeId node) const {
+    const auto units = by_node_.find(node);
+    if (units == by_node_.end()) return {};
+    return {units->second.begin(), units->second.end()};
+}
+
+}  // namespace tessera::master
