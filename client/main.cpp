@@ -14,6 +14,7 @@
 #include "client/tools/keys_tool.h"
 #include "client/tools/live_target.h"
 #include "client/tools/log_tool.h"
+#include "client/tools/node_tool.h"
 #include "client/tools/probe.h"
 #include "client/tools/render.h"
 #include "client/tools/set_filter.h"
@@ -34,6 +35,7 @@ int main(int argc, char** argv) {
                                                tools::watch_command(line),
                                                tools::log_command(line),
                                                tools::status_command(line),
+                                               tools::node_command(line),
                                                tools::probe_command(line),
                                                tools::keys_command(line),
                                                tools::compare_command(line),

@@ -1,6 +1,7 @@
 #include "client/session.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "client/channel_session.h"
 #include "client/session_exchange.h"
@@ -161,18 +162,28 @@ std::vector<session::EditTrace> Session::trace(std::uint32_t count) {
 }
 
 session::ClusterStatus Session::status() {
-    Implementation& self = *implementation_;
-    self.status.reset();
-    self.asks_status = true;
-    self.link.send(wire::StatusRequest{});
-    const TimePoint deadline = self.clock.now() + self.settings.lost_limit;
-    while (!self.status && self.clock.now() < deadline) {
-        self.receive_next(std::min(self.clock.now() + Slice, deadline), {});
-        self.throw_refusals();
+    wire::StatusReply page = implementation_->status_page({});
+    session::ClusterStatus status = std::move(page.status);
+    while (page.more && !status.nodes.empty()) {
+        page = implementation_->status_page(status.nodes.back().summary.id);
+        std::move(page.status.nodes.begin(), page.status.nodes.end(), std::back_inserter(status.nodes));
+        if (page.status.nodes.empty()) break;
     }
-    self.asks_status = false;
-    if (!self.status) throw Error(ErrorCode::Unavailable, "the master does not answer: is it still running?");
-    return *std::move(self.status);
+    return status;
+}
+
+wire::StatusReply Session::Implementation::status_page(NodeId after) {
+    status.reset();
+    asked_status = wire::StatusRequest{after};
+    link.send(*asked_status);
+    const TimePoint deadline = clock.now() + settings.lost_limit;
+    while (!status && clock.now() < deadline) {
+        receive_next(std::min(clock.now() + Slice, deadline), {});
+        throw_refusals();
+    }
+    asked_status.reset();
+    if (!status) throw Error(ErrorCode::Unavailable, "the master does not answer: is it still running?");
+    return *std::move(status);
 }
 
 void Session::pump() {

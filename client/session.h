@@ -148,6 +148,9 @@ class Session {
     void cancel_job(const session::JobName& job);  // stops it and deletes its picture
 
     session::ClusterStatus status();
+    // For operators, about all nodes of that name: ends their quarantine; or makes them finish and leave.
+    void release_node(const std::string& name);
+    void drain_node(const std::string& name);
 
     // Processes received messages, so that an idle caller notices a lost link. next_frame() does so as well.
     void pump();

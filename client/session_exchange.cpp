@@ -61,7 +61,7 @@ void Session::Implementation::take(Rejoined&& rejoined) {
 void Session::Implementation::take(wire::ControlMessage&& message) {
     if (const auto* welcome = std::get_if<wire::SceneJoined>(&message)) return take(*welcome);
     if (auto* reply = std::get_if<wire::StatusReply>(&message)) {
-        status = std::move(reply->status);
+        status = std::move(*reply);
         return;
     }
     // Messages sent between the new hello and the new join were refused; they are sent again.
@@ -165,7 +165,7 @@ void Session::Implementation::collect_frame() {
 void Session::Implementation::resend() {
     for (const SentEdit& edit : unanswered) link.send(net::Bytes(edit.encoded.message));
     for (const auto& [request, message] : asked) link.send(message);
-    if (asks_status) link.send(wire::StatusRequest{});
+    if (asked_status) link.send(*asked_status);
     for (const auto& [number, view] : views) link.send(view);
     for (const std::uint64_t number : stopping) link.send(wire::EndView{.number = number, .deliver = true});
     if (fetched) link.send(*fetched);

@@ -44,8 +44,9 @@ struct Session::Implementation {
     std::deque<SentEdit> unanswered;
     std::deque<session::EditResult> results;
     std::map<std::uint64_t, wire::ControlMessage> asked, answers;  // by request
-    bool asks_status = false;
-    std::optional<session::ClusterStatus> status;
+    std::optional<wire::StatusRequest> asked_status;
+    std::optional<wire::StatusReply> status;
+    wire::StatusReply status_page(NodeId after);
     std::map<std::uint64_t, wire::RequestView> views;  // the latest request of each
     std::optional<wire::FetchJob> fetched;             // the job being fetched
     std::set<std::uint64_t> stopping;                  // views that were asked to end

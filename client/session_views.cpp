@@ -137,6 +137,16 @@ void Session::cancel_job(const session::JobName& job) {
     implementation_->send_and_confirm(wire::CancelJob{.job = job});
 }
 
+void Session::release_node(const std::string& name) {
+    implementation_->send_and_confirm(
+        wire::ManageNode{.name = name, .order = wire::ManageNode::Order::Release});
+}
+
+void Session::drain_node(const std::string& name) {
+    implementation_->send_and_confirm(
+        wire::ManageNode{.name = name, .order = wire::ManageNode::Order::Drain});
+}
+
 std::string Session::set_filter(const std::string& view, const std::string& filter) {
     return implementation_->send_and_confirm(wire::SetViewFilter{.view = view, .filter = filter});
 }

@@ -1,14 +1,13 @@
-#include <signal.h>
-
 #include <chrono>
 #include <iostream>
-#include <thread>
+#include <stop_token>
 
 #include "master/config.h"
 #include "master/render_master.h"
 #include "mediator/base/malloc_trim.h"
 #include "mediator/net/zmq_channel.h"
 #include "mediator/program/command_line.h"
+#include "mediator/program/signals.h"
 
 namespace {
 
@@ -27,7 +26,7 @@ master::EventSink event_log(const cli::Log& log) {
     };
 }
 
-int serve(const master::MasterOptions& options, const sigset_t& signals) {
+int serve(const master::MasterOptions& options) {
     const cli::Log log(options.log);
     const auto context = net::make_zmq_context();
     net::ServerSettings server{.endpoint = options.listen};
@@ -46,13 +45,17 @@ int serve(const master::MasterOptions& options, const sigset_t& signals) {
                                        settings, event_log(log));
     log.info("listening on " + options.listen + (options.insecure ? ", not encrypted" : ""));
 
-    std::jthread loop([&](std::stop_token stop) { render_master.run(stop); });
-    for (int signal = 0; sigwait(&signals, &signal) == 0 && signal == SIGHUP;) {
-        render_master.post([&log](net::Channel& owned) {
-            static_cast<net::ZmqServer&>(owned).reload_keys();
-            log.info("the allow-list was read again");
-        });
-    }
+    std::stop_source stop;
+    const cli::SignalThread signals({.stop = [&] { stop.request_stop(); },
+                                     .stop_at_once = {},
+                                     .reload =
+                                         [&] {
+                                             render_master.post([&log](net::Channel& owned) {
+                                                 static_cast<net::ZmqServer&>(owned).reload_keys();
+                                                 log.info("the allow-list was read again");
+                                             });
+                                         }});
+    render_master.run(stop.get_token());
     log.info("stopping");
     return 0;
 }
@@ -61,16 +64,12 @@ int serve(const master::MasterOptions& options, const sigset_t& signals) {
 
 int main(int argc, char** argv) {
     disable_malloc_trim();
-    // Before any thread starts, so that none of them is interrupted: one thread waits for signals.
-    sigset_t signals;
-    sigemptyset(&signals);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
-    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    cli::block_signals();
 
     master::MasterOptions options;
     if (const auto exit = master::parse_options(argc, argv, options, std::cout, std::cerr)) return *exit;
     try {
-        return serve(options, signals);
+        return serve(options);
     } catch (const Error& error) {
         std::cerr << "tessera-master: " << error.what() << "\n";
         return error.code() == ErrorCode::InvalidInput ? 2 : cli::ExitUnavailable;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <random>
+#include <thread>
 
 #include "master/peers/roles.h"
 #include "mediator/wire/envelope.h"
@@ -38,6 +39,7 @@ RenderMaster::RenderMaster(std::unique_ptr<net::Channel> channel, std::shared_pt
       settings_(settings),
       events_(std::move(events)),
       started_(clock.now()),
+      guard_(clock, events_),
       outbox_(*channel_),
       nodes_(settings.liveness, settings.stuck),
       outputs_(*channel_),
@@ -67,8 +69,23 @@ void RenderMaster::post(std::function<void(net::Channel&)> task) {
 
 void RenderMaster::run(std::stop_token stop) {
     const std::stop_callback wake_on_stop(stop, [this] { channel_->wake(); });
-    while (!stop.stop_requested()) step(clock_.now(), stop);
-    send_goodbye();
+    while (!stop.stop_requested()) {
+        // Receiving can fail as well: the link, not a message.
+        if (!guard_.run("the event loop", [&] { step(clock_.now(), stop); }))
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    guard_.run("writing the last checkpoint", [&] { save_at_the_end(); });
+    guard_.run("saying goodbye", [&] { send_goodbye(); });
+}
+
+// Film is copied and written by other threads.
+void RenderMaster::save_at_the_end() {
+    constexpr Duration Limit = std::chrono::seconds(20);
+    const TimePoint end = clock_.now() + Limit;
+    while (!scene_.save_at_the_end(clock_.now()) && clock_.now() < end) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        for (RenderOutput& output : outputs_.take()) scene_.take(output, clock_.now());
+    }
 }
 
 void RenderMaster::step(TimePoint now, std::stop_token stop) {
@@ -84,21 +101,28 @@ void RenderMaster::step(TimePoint now, std::stop_token stop) {
         deadline = now;  // after the first one take only messages that have already arrived
     }
     now = clock_.now();
+    run_posted();
+    for (RenderOutput& output : outputs_.take())
+        guard_.run("taking the result of a thread", [&] { scene_.take(output, now); });
+    guard_.run("collecting overdue units", [&] { dispatcher_.collect_overdue(now); });
+    guard_.run("serving clients", [&] { service_.tick(now); });
+    guard_.run("the scene's tick", [&] { scene_.tick(now); });
+    guard_.run("repairing nodes' scenes",
+               [&] { scene_.distributor().repair(nodes_, now, 3 * settings_.liveness.interval); });
+    guard_.run("acknowledging film", [&] { dispatcher_.send_film_taken(); });
+    guard_.run("sending heartbeats", [&] { heartbeats(now); });
+    guard_.run("sending", [&] { outbox_.flush(); });
+    guard_.run("dropping lost peers", [&] { drop_lost_peers(now); });
+    guard_.run("removing silent peers", [&] { remove_timed_out_peers(now); });
+}
+
+void RenderMaster::run_posted() {
     std::vector<std::function<void(net::Channel&)>> posted;
     {
         const std::scoped_lock lock(mutex_);
         posted.swap(posted_);
     }
-    for (const auto& task : posted) task(*channel_);
-    for (RenderOutput& output : outputs_.take()) scene_.take(output, now);
-    dispatcher_.collect_overdue(now);
-    service_.tick(now);
-    scene_.tick(now);
-    scene_.distributor().repair(nodes_, now, 3 * settings_.liveness.interval);
-    heartbeats(now);
-    outbox_.flush();
-    drop_lost_peers(now);
-    remove_timed_out_peers(now);
+    for (const auto& task : posted) guard_.run("a task of the operator", [&] { task(*channel_); });
 }
 
 TimePoint RenderMaster::next_wake(TimePoint now) const {
@@ -158,9 +182,14 @@ void RenderMaster::bulk(net::Message& message, TimePoint now) {
             node->user != message.user) {
             return drop(message, "film from a peer that is not a registered node");
         }
-        outbox_.bytes.film += message.bytes.size();
+        const std::size_t size = message.bytes.size();
+        outbox_.bytes.film += size;
         node->liveness.on_message(now);
-        return film_.push(message.peer, std::move(message.bytes));
+        const auto head = wire::film_head(message.bytes);
+        if (!head) return dispatcher_.malformed_film(*node, "film with a damaged header", size, now);
+        if (auto admission = dispatcher_.admit(*node, *head, size, now))
+            film_.push(node->id, *head, *std::move(admission), std::move(message.bytes));
+        return;
     }
     auto decoded = wire::decode_bulk(message.bytes);
     if (!decoded) return drop(message, decoded.error().what());
@@ -234,6 +263,7 @@ void RenderMaster::hello(const net::Message& message, wire::Hello hello, TimePoi
         node->views.clear();
         node->sent = {};
         node->work_sequence = 0;
+        node->film_taken = 0;
         node->liveness.restarted(now);
         welcome(message.peer, node->id.value, node->token);
         return scene_.distributor().joined(*node, now);
@@ -247,7 +277,7 @@ void RenderMaster::hello(const net::Message& message, wire::Hello hello, TimePoi
         return welcome(message.peer, session->id.value, session->token);
     }
     // A repeated Hello of a known peer (the reply to its first one was lost) starts a new session.
-    if (NodeRecord* node = nodes_.by_control(message.peer)) remove_node(node->id, "it reconnected");
+    if (NodeRecord* node = nodes_.by_control(message.peer)) remove_node(node->id, "it reconnected", now);
     if (SessionRecord* session = sessions_.by_control(message.peer))
         remove_session(session->id, Views::DisconnectReason::Timeout, now);
     if (is_node ? nodes_.all().size() >= settings_.max_nodes
@@ -261,6 +291,7 @@ void RenderMaster::hello(const net::Message& message, wire::Hello hello, TimePoi
                  "node " + hello.name + " joined (" + hello.backend + ", " + hello.kind + ")"});
         NodeRecord& node =
             nodes_.add(NodeId{number}, token, message.peer, message.user, std::move(hello), now);
+        dispatcher_.joined(node, now);
         welcome(message.peer, number, token);
         return scene_.distributor().joined(node, now);
     }

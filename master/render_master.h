@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "master/guard.h"
 #include "master/peers/node_table.h"
 #include "master/peers/outbox.h"
 #include "master/peers/session_table.h"
@@ -46,6 +47,7 @@ class RenderMaster {
 
   private:
     void step(TimePoint now, std::stop_token stop);
+    void run_posted();
     void receive(net::Message&& message, TimePoint now);
     void control(net::Message& message, TimePoint now);
     void bulk(net::Message& message, TimePoint now);
@@ -57,14 +59,17 @@ class RenderMaster {
                      TimePoint now);
     void from_member(SessionRecord& session, wire::ControlMessage& message, TimePoint now);
     void bulk_hello(const net::Message& message, const wire::BulkHello& hello);
-    void remove_node(NodeId id, const std::string& why);
+    void remove_node(NodeId id, const std::string& why, TimePoint now);
+    void manage_node(const SessionRecord& session, const wire::ManageNode& order, TimePoint now);
     void remove_session(SessionId id, Views::DisconnectReason reason, TimePoint now);
     void heartbeats(TimePoint now);
     void remove_timed_out_peers(TimePoint now);
     void drop_lost_peers(TimePoint now);
     void drop(const net::Message& message, const std::string& why);
     session::ClusterStatus status(TimePoint now) const;
+    net::Bytes status_page(NodeId after, TimePoint now) const;
     TimePoint next_wake(TimePoint now) const;
+    void save_at_the_end();
     void send_goodbye();
 
     std::unique_ptr<net::Channel> channel_;
@@ -74,6 +79,7 @@ class RenderMaster {
     EventSink events_;
     TimePoint started_;
 
+    Guard guard_;
     Outbox outbox_;
     NodeTable nodes_;
     SessionTable sessions_;

@@ -21,15 +21,14 @@ void RenderMaster::from_node(NodeRecord& node, wire::ControlMessage& message, Ti
             case SceneDistributor::CheckResult::RemoveNode:
                 outbox_.control(node.control,
                                 wire::Refusal{"your scene differs from the master's: check the build"});
-                return remove_node(node.id, "its scene differs from the master's");
+                return remove_node(node.id, "its scene differs from the master's", now);
         }
     } else if (const auto* resync = std::get_if<wire::Resync>(&message)) {
         scene_.distributor().resync(node, *resync, now);
     } else if (const auto* refused = std::get_if<wire::SceneRefused>(&message)) {
-        scene_.distributor().refused(node, *refused);
+        scene_.node_refused(node, *refused, now);
     } else if (const auto* release = std::get_if<wire::UnitReleased>(&message)) {
-        if (const auto failure = dispatcher_.released(node, *release, now))
-            scene_.views().unit_failed(*failure, now);
+        dispatcher_.released(node, *release, now);
     } else if (const auto* notice = std::get_if<wire::Notice>(&message)) {
         events_({notice->severity, "node " + node.hello.name + ": " + notice->text});
     } else if (const auto* goodbye = std::get_if<wire::Goodbye>(&message)) {
@@ -57,12 +56,14 @@ void RenderMaster::from_client(SessionRecord& session, wire::ControlMessage& mes
         scene_.handle(session, *fetched);
     } else if (const auto* cancelled = std::get_if<wire::CancelJob>(&message)) {
         scene_.handle(session, *cancelled);
-    } else if (std::holds_alternative<wire::StatusRequest>(message)) {
-        outbox_.control(session.control, wire::StatusReply{status(now)});
+    } else if (const auto* asked = std::get_if<wire::StatusRequest>(&message)) {
+        outbox_.control(session.control, status_page(asked->after, now));
     } else if (const auto* join = std::get_if<wire::JoinScene>(&message)) {
         service_.join_scene(session, *join, now);
     } else if (std::holds_alternative<wire::Goodbye>(message)) {
         remove_session(session.id, Views::DisconnectReason::Graceful, now);
+    } else if (const auto* order = std::get_if<wire::ManageNode>(&message)) {
+        manage_node(session, *order, now);
     } else if (const auto* traced = std::get_if<wire::ReadTrace>(&message)) {
         outbox_.control(session.control, scene_.trace(*traced));
     } else if (scene_.is_member(session.id)) {
@@ -70,6 +71,28 @@ void RenderMaster::from_client(SessionRecord& session, wire::ControlMessage& mes
     } else {
         outbox_.control(session.control, wire::Refusal{"this client has not joined a scene: join one first"});
     }
+}
+
+void RenderMaster::manage_node(const SessionRecord& session, const wire::ManageNode& order, TimePoint now) {
+    wire::RequestDone done{.request = order.request, .accepted = true, .text = {}};
+    if (order.order == wire::ManageNode::Order::Release) {
+        done.accepted = dispatcher_.release_from_quarantine(order.name, now);
+        if (!done.accepted) done.text = "no node named '" + order.name + "' is in quarantine";
+    } else {
+        std::size_t count = 0;
+        for (const auto& [id, node] : nodes_.all()) {
+            if (node.hello.name != order.name) continue;
+            outbox_.control(node.control, wire::Leave{});
+            ++count;
+        }
+        done.accepted = count > 0;
+        if (count == 0) done.text = "there is no node named '" + order.name + "': tessera status lists them";
+    }
+    if (done.accepted) {
+        events_({wire::Severity::Info, session.user + " ordered node " + order.name + ": " +
+                                           std::string(enumerator_name(order.order))});
+    }
+    outbox_.control(session.control, std::move(done));
 }
 
 void RenderMaster::from_member(SessionRecord& session, wire::ControlMessage& message, TimePoint now) {
@@ -110,13 +133,14 @@ void RenderMaster::from_member(SessionRecord& session, wire::ControlMessage& mes
     }
 }
 
-void RenderMaster::remove_node(NodeId id, const std::string& why) {
+void RenderMaster::remove_node(NodeId id, const std::string& why, TimePoint now) {
     const NodeRecord* node = nodes_.find(id);
     if (node == nullptr) return;
+    const auto departure = node->leaving ? Dispatcher::Departure::Expected : Dispatcher::Departure::Sudden;
     if (!node->leaving) events_({wire::Severity::Warning, "node " + node->hello.name + " is gone: " + why});
     outbox_.forget(net::Link::Control, node->control);
     if (node->bulk) outbox_.forget(net::Link::Bulk, *node->bulk);
-    dispatcher_.node_gone(id);
+    dispatcher_.node_gone(id, departure, now);
     scene_.node_gone(id);
     nodes_.remove(id);
 }
@@ -130,7 +154,7 @@ void RenderMaster::remove_session(SessionId id, Views::DisconnectReason reason, 
 }
 
 void RenderMaster::remove_timed_out_peers(TimePoint now) {
-    for (const NodeId id : nodes_.timed_out(now)) remove_node(id, "silent for too long");
+    for (const NodeId id : nodes_.timed_out(now)) remove_node(id, "silent for too long", now);
     std::vector<SessionId> timed_out;
     for (const auto& [id, session] : sessions_.all()) {
         if (session.liveness.timed_out(now)) timed_out.push_back(id);
@@ -142,12 +166,26 @@ void RenderMaster::drop_lost_peers(TimePoint now) {
     for (const auto& [link, peer] : outbox_.take_lost()) {
         const bool is_control = link == net::Link::Control;
         if (NodeRecord* node = is_control ? nodes_.by_control(peer) : nodes_.by_bulk(peer)) {
-            remove_node(node->id, "its connection broke");
+            remove_node(node->id, "its connection broke", now);
         } else if (SessionRecord* session =
                        is_control ? sessions_.by_control(peer) : sessions_.by_bulk(peer)) {
             remove_session(session->id, Views::DisconnectReason::Timeout, now);
         }
     }
+}
+
+// As many nodes as fit.
+net::Bytes RenderMaster::status_page(NodeId after, TimePoint now) const {
+    wire::StatusReply reply{.status = status(now)};
+    std::vector<session::NodeStatus>& nodes = reply.status.nodes;
+    std::erase_if(nodes, [&](const session::NodeStatus& node) { return node.summary.id <= after; });
+    net::Bytes message = wire::encode(wire::ControlMessage(reply));
+    while (!wire::fits_control(message) && !nodes.empty()) {
+        nodes.resize(nodes.size() / 2);
+        reply.more = true;
+        message = wire::encode(wire::ControlMessage(reply));
+    }
+    return message;
 }
 
 session::ClusterStatus RenderMaster::status(TimePoint now) const {
@@ -158,12 +196,14 @@ session::ClusterStatus RenderMaster::status(TimePoint now) const {
                                  .blob_bytes = blobs_->byte_size(),
                                  .sessions = static_cast<std::uint32_t>(sessions_.all().size()),
                                  .queued = static_cast<std::uint32_t>(sessions_.queue().size()),
-                                 .dropped_messages = dropped_messages_ + dispatcher_.malformed_film(),
+                                 .dropped_messages = dropped_messages_ + dispatcher_.refused_film(),
                                  .units = dispatcher_.counts(),
                                  .wire_bytes = outbox_.bytes,
                                  .scene = scene_.status(),
                                  .resyncs = scene_.distributor().resyncs(),
-                                 .display = scene_.display().status(now)};
+                                 .display = scene_.display().status(now),
+                                 .contradictions = dispatcher_.contradictions(),
+                                 .caught_exceptions = guard_.caught()};
     for (const auto& [id, node] : nodes_.all()) {
         session::NodeStatus entry{
             .summary = {.id = id,
@@ -177,7 +217,12 @@ session::ClusterStatus RenderMaster::status(TimePoint now) const {
             .units_in_flight = static_cast<std::uint32_t>(node.state.in_flight.size()),
             .samples_per_second = dispatcher_.rate(id) * std::max(1u, node.hello.concurrent_units),
             .round_trip_seconds = node.round_trip_seconds,
-            .stuck = node.stuck};
+            .stuck = node.stuck,
+            .quarantine = {}};
+        if (const auto* held = dispatcher_.quarantine().find(node.identity(), now)) {
+            entry.quarantine = held->reason;
+            entry.quarantine_seconds = seconds(*held->until - now);
+        }
         if (const auto clock = node.clock.offset(now)) {
             entry.clock_offset_seconds = seconds(clock->offset);
             entry.clock_bound_seconds = seconds(clock->bound);

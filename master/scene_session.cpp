@@ -9,8 +9,7 @@ namespace tessera::master {
 namespace {
 
 constexpr Duration VersionInterval = std::chrono::milliseconds(16);
-constexpr std::size_t MaxNameLength = 64, MaxPresenceText = 1024, MaxSelection = 1024;
-constexpr Duration MaxPresence = std::chrono::minutes(10);
+constexpr std::size_t MaxNameLength = 64;
 
 }  // namespace
 
@@ -43,29 +42,9 @@ void SceneSession::open(wire::RecordedTitle scene) {
     views_.charge_from(services_.outbox.bytes);
     counts_ = {};
     traces_ = {};
+    published_transactions_ = built_transactions_ = authority_.transactions();
     services_.events(
         {wire::Severity::Info, (is_exclusive() ? "scene '" : "live scene '") + title() + "' is open"});
-}
-
-void SceneSession::record_to(const std::filesystem::path& folder, Duration checkpoint_interval,
-                             TimePoint now) {
-    journal_.emplace(folder, checkpoint_interval, authority_, services_.blobs, services_.events);
-    services_.jobs.record_to(folder / "jobs");  // the journal has locked the folder
-    const Recovery& recovery = journal_->recovery();
-    if (!recovery.found || recovery.scene.title.empty()) {
-        (void)authority_.clear();
-        return;
-    }
-    open(recovery.scene);
-    std::vector<wire::SavedView> views = recovery.views;
-    std::erase_if(views, [this](const wire::SavedView& view) {  // ended before its end was recorded
-        return view.request.detached && services_.jobs.find({view.owner_user, view.name}) != nullptr;
-    });
-    const bool has_only_jobs =
-        !views.empty() &&
-        std::all_of(views.begin(), views.end(), [](const auto& view) { return view.request.detached; });
-    if (is_exclusive() && !has_only_jobs) owner_missing_since_ = now;  // its owner may return
-    views_.restore(std::move(views), authority_.version(), authority_.state_hash(), now);
 }
 
 bool SceneSession::admits(const SessionRecord& session, const wire::JoinScene& request) const {
@@ -160,8 +139,35 @@ void SceneSession::edited(const SessionRecord& session, const scene::Edit& edit,
 
 void SceneSession::node_built(const NodeRecord& node, const wire::VersionReport& report, TimePoint now) {
     if (!open_) return;
+    built_transactions_ = published_transactions_;  // the report is about the published version
     traces_.node_built(node.id, node.hello.name, report.version, report.received_at, report.built_at,
                        node.clock.offset(now));
+}
+
+void SceneSession::node_refused(NodeRecord& node, const wire::SceneRefused& refusal, TimePoint now) {
+    distributor_.refused(node, refusal);
+    if (node.refused != authority_.version()) return;
+    if (!open_ || is_exclusive()) return;
+    bool any = false;
+    for (const auto& [id, other] : services_.nodes.all()) {
+        if (other.leaving) continue;
+        if (other.refused != authority_.version()) return;  // it may still build it
+        any = true;
+    }
+    if (any) withdraw_unbuildable("node " + node.hello.name + ": " + refusal.reason, now);
+}
+
+void SceneSession::withdraw_unbuildable(const std::string& reason, TimePoint now) {
+    const auto withdrawn = authority_.withdraw_after(built_transactions_, {.name = "the master"});
+    if (withdrawn.empty()) return;
+    for (const SceneAuthority::Withdrawn& edit : withdrawn) {
+        const std::string text = "edit " + std::to_string(edit.transaction) + " (" + edit.text +
+                                 ") is undone, since no node can build the scene with it: " + reason;
+        services_.events({wire::Severity::Error, text});
+        if (const SessionRecord* author = services_.sessions.find(edit.author))
+            services_.outbox.control(author->control, wire::Notice{wire::Severity::Error, text});
+    }
+    publish_if_due(now);
 }
 
 net::Bytes SceneSession::trace(const wire::ReadTrace& request) const {
@@ -224,46 +230,6 @@ void SceneSession::handle(SessionRecord& session, const wire::LockObjects& reque
         problems += (problems.empty() ? "" : "; ") + problem;
     }
     done(session, request.request, problems);
-}
-
-void SceneSession::handle(SessionRecord& session, wire::SetPresence request, TimePoint now) {
-    Member& member = members_.at(session.id);
-    request.text.resize(std::min(request.text.size(), MaxPresenceText));
-    request.selection.resize(std::min(request.selection.size(), MaxSelection));
-    member.presence_until = now + std::clamp(request.time_to_live, Duration::zero(), MaxPresence);
-    member.presence = std::move(request);
-}
-
-void SceneSession::handle(SessionRecord& session, const wire::ReadMembers& request, TimePoint now) {
-    session::Members members{.title = title(), .locks = authority_.locks()};
-    for (const auto& [id, member] : members_) {
-        const SessionRecord* other = services_.sessions.find(id);
-        if (other == nullptr) continue;
-        session::Member entry{.session = id,
-                              .name = member.name,
-                              .user = other->user,
-                              .editor = other->role != net::Role::Viewer};
-        if (const auto clock = other->clock.offset(now)) {
-            entry.clock_offset_seconds = seconds(clock->offset);
-            entry.clock_bound_seconds = seconds(clock->bound);
-        }
-        if (now < member.presence_until) {
-            entry.text = member.presence.text;
-            entry.selection = member.presence.selection;
-        }
-        members.members.push_back(std::move(entry));
-    }
-    for (const auto& [id, live] : views_.table().all()) {
-        members.views.push_back(
-            {.name = live.name,
-             .owner = live.owner.name,
-             .width = live.request.view.width,
-             .height = live.request.view.height,
-             .samples = live.shown ? live.shown->samples / live.request.view.window.pixel_count() : 0,
-             .spp = live.request.stop.spp,
-             .watchers = views_.watchers(id)});
-    }
-    services_.outbox.control(session.control, wire::Members{request.request, std::move(members)});
 }
 
 void SceneSession::handle(SessionRecord& session, const wire::ReadHistory& request) {
@@ -356,6 +322,7 @@ void SceneSession::follow_display(TimePoint now) {
 void SceneSession::publish(const scene::ChangeList& changes, TimePoint now) {
     published_at_ = now;
     ++counts_.versions;
+    published_transactions_ = authority_.transactions();
     // Outdated work is cancelled before the change is sent to the nodes, so that they build sooner.
     const bool restarts = views_.scene_changed(changes, authority_.scene());
     const std::uint64_t before = services_.outbox.bytes.control;
@@ -382,6 +349,8 @@ void SceneSession::take(RenderOutput& output, TimePoint now) {
     if (const auto* report = std::get_if<MergeReport>(&output)) {
         const Dispatcher::Taken taken = services_.render.dispatcher.take(*report, now);
         if (taken != Dispatcher::Taken::Dropped) views_.took(*report, taken, now);
+    } else if (const auto* failure = std::get_if<TaskFailure>(&output)) {
+        services_.events({wire::Severity::Error, failure->text});
     } else if (auto* made = std::get_if<OutputResult>(&output)) {
         display_.add_output(std::move(*made), now);
     } else {
@@ -407,20 +376,6 @@ void SceneSession::tick(TimePoint now) {
     views_.deal(now);
     store_finished_jobs();
     for (const FirstPicture& first : views_.take_first_pictures()) traces_.merged(first.version, first.at);
-}
-
-void SceneSession::keep_journal(TimePoint now) {
-    if (!journal_) return;
-    journal_->tick();
-    ViewSaver& saver = views_.saver();
-    if (auto saved = saver.take_saved()) {
-        add_new_jobs(*saved);
-        journal_->write_checkpoint(scene_, std::move(*saved), progress_being_saved_, now);
-    }
-    const std::uint64_t progress = saver.film_progress();
-    if (saver.is_saving() || !journal_->wants_checkpoint(progress, now)) return;
-    progress_being_saved_ = progress;
-    saver.save(authority_.state_hash());
 }
 
 TimePoint SceneSession::next_event(TimePoint now) const {

@@ -75,6 +75,9 @@ class SceneSession {
                 std::uint64_t message_bytes, TimePoint now);
     void node_built(const NodeRecord& node, const wire::VersionReport& report, TimePoint now);
     void node_gone(NodeId node) { traces_.node_gone(node); }
+    // A node cannot build the version. If none can, the edits since the last version that one built are undone, and
+    // their authors get the reason. An exclusive scene stays as it is: its views end with the reason.
+    void node_refused(NodeRecord& node, const wire::SceneRefused& refusal, TimePoint now);
 
     void handle(SessionRecord& session, const wire::ReadScene& request);
     void handle(SessionRecord& session, const wire::LockObjects& request);
@@ -102,6 +105,9 @@ class SceneSession {
     // Takes results of the rendering threads; results of other scenes are ignored.
     void take(RenderOutput& output, TimePoint now);
     void tick(TimePoint now);
+    // Writes what is new since the last checkpoint. True: it is written, or there is nothing to write. To be called
+    // again, with take() in between, until it is or time is up.
+    bool save_at_the_end(TimePoint now);
     TimePoint next_event(TimePoint now) const;
     session::SceneStatus status() const;
 
@@ -131,12 +137,14 @@ class SceneSession {
     void follow_display(TimePoint now);
     void publish_if_due(TimePoint now);
     void keep_journal(TimePoint now);
+    void write_saved_views(TimePoint now);
     std::string open_view(const SessionRecord& session, std::uint64_t number,
                           const session::ViewRequest& wanted, TimePoint now);
     std::string submission_problem(const SessionRecord& session, const session::ViewRequest& wanted) const;
     void record_job(const std::string& name);
     void add_new_jobs(std::vector<wire::SavedView>& saved) const;
     void store_finished_jobs();
+    void withdraw_unbuildable(const std::string& reason, TimePoint now);
     void close_when_left(TimePoint now);
     const ViewState* job_view(const session::JobName& job) const;
 
@@ -155,6 +163,8 @@ class SceneSession {
     LatestContent latest_content_;
     std::vector<WaitingRead> reads_;
     TimePoint published_at_{};
+    std::uint64_t published_transactions_ = 0;  // up to the published version
+    std::uint64_t built_transactions_ = 0;      // up to the latest version that a node has built
     std::uint64_t progress_being_saved_ = 0;
     session::SceneStatus counts_;
     EditTraceLog traces_;

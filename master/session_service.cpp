@@ -8,6 +8,17 @@
 namespace tessera::master {
 
 namespace {
+
+// As many texts as an answer can hold.
+std::vector<std::string> listed(std::vector<std::string> texts) {
+    constexpr std::size_t MaxTexts = 64, MaxLength = 400;
+    const std::size_t all = texts.size();
+    texts.resize(std::min(all, MaxTexts));
+    for (std::string& text : texts) text.resize(std::min(text.size(), MaxLength));
+    if (all > MaxTexts) texts.push_back("and " + std::to_string(all - MaxTexts) + " more");
+    return texts;
+}
+
 constexpr std::size_t MaxPendingEdits = 256;
 }  // namespace
 
@@ -56,7 +67,8 @@ void SessionService::submit(SessionRecord& session, scene::Edit edit, std::uint6
                             TimePoint now) {
     edit.session = session.id;  // overrides the message's value
     if (session.edits.size() >= MaxPendingEdits) {
-        return refuse_edit(session, "too many edits wait for their blobs: send the blobs first");
+        return refuse_edit(session, edit.sequence,
+                           "too many edits wait for their blobs: send the blobs first");
     }
     session.edits.push_back({std::nullopt, std::move(edit), message_bytes});
     advance(session, now);
@@ -64,7 +76,8 @@ void SessionService::submit(SessionRecord& session, scene::Edit edit, std::uint6
 
 void SessionService::submit(SessionRecord& session, const wire::SubmitEditByBlob& message, TimePoint now) {
     if (session.edits.size() >= MaxPendingEdits) {
-        return refuse_edit(session, "too many edits wait for their blobs: send the blobs first");
+        return refuse_edit(session, message.sequence,
+                           "too many edits wait for their blobs: send the blobs first");
     }
     scene::Edit placeholder{
         .session = session.id, .sequence = message.sequence, .base = message.base, .entries = {}};
@@ -72,12 +85,11 @@ void SessionService::submit(SessionRecord& session, const wire::SubmitEditByBlob
     advance(session, now);
 }
 
-void SessionService::refuse_edit(SessionRecord& session, std::string problem) {
-    const std::uint64_t sequence = session.edits.empty() ? 0 : session.edits.front().edit.sequence;
+void SessionService::refuse_edit(SessionRecord& session, std::uint64_t sequence, std::string problem) {
     outbox_.control(session.control, wire::EditReply{.sequence = sequence,
                                                      .result = {.accepted = false,
                                                                 .version = scene_.authority().version(),
-                                                                .problems = {std::move(problem)}}});
+                                                                .problems = listed({std::move(problem)})}});
 }
 
 bool SessionService::blobs_are_here(SessionRecord& session, SessionRecord::PendingEdit& pending) {
@@ -107,14 +119,14 @@ void SessionService::advance(SessionRecord& session, TimePoint now) {
     while (!session.edits.empty()) {
         SessionRecord::PendingEdit& pending = session.edits.front();
         if (!scene_.is_member(session.id)) {
-            refuse_edit(session, "this session has no open scene: open one first");
+            refuse_edit(session, pending.edit.sequence, "this session has no open scene: open one first");
             session.edits.pop_front();
             continue;
         }
         try {
             if (!blobs_are_here(session, pending)) break;
         } catch (const Error& error) {
-            refuse_edit(session, error.what());
+            refuse_edit(session, pending.edit.sequence, error.what());
             session.edits.pop_front();
             continue;
         }
@@ -124,9 +136,9 @@ void SessionService::advance(SessionRecord& session, TimePoint now) {
         outbox_.control(session.control, wire::EditReply{.sequence = pending.edit.sequence,
                                                          .result = {.accepted = answer.accepted,
                                                                     .version = answer.version,
-                                                                    .problems = answer.problems,
+                                                                    .problems = listed(answer.problems),
                                                                     .transaction = answer.transaction,
-                                                                    .notes = answer.notes}});
+                                                                    .notes = listed(answer.notes)}});
         session.edits.pop_front();
     }
     if (session.opening) advance_display(session, now);
@@ -189,7 +201,8 @@ void SessionService::absent(SessionRecord& session, const wire::BlobAbsent& abse
                                                      " that its display refers to"});
     }
     if (session.edits.empty()) return;
-    refuse_edit(session, "the client does not have blob " + to_hex(absent.hash) + " that its edit refers to");
+    refuse_edit(session, session.edits.front().edit.sequence,
+                "the client does not have blob " + to_hex(absent.hash) + " that its edit refers to");
     session.edits.pop_front();
     session.fetcher.forget_all();
     advance(session, now);

@@ -28,7 +28,7 @@ class SessionService {
     void advance(SessionRecord& session, TimePoint now);  // applies edits whose blobs have arrived
     bool blobs_are_here(SessionRecord& session, SessionRecord::PendingEdit& edit);
     void advance_display(SessionRecord& session, TimePoint now);
-    void refuse_edit(SessionRecord& session, std::string problem);
+    void refuse_edit(SessionRecord& session, std::uint64_t sequence, std::string problem);
     void admit(SessionRecord& session, const wire::JoinScene& request, TimePoint now);
     std::string busy_text() const;
 

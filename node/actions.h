@@ -19,9 +19,15 @@ struct SendControl {
 struct SendBulk {
     wire::BulkMessage message;
 };
-struct SendFilm {  // then call film_sent()
-    UnitId unit;
+struct SendFilm {  // then call film_sent() for each unit
+    std::vector<UnitId> units;
     std::vector<wire::FilmPart> parts;
+};
+struct WithdrawFilm {  // unless it is being sent: then call film_withdrawn() for each unit that it was of
+    UnitId unit;
+};
+struct FilmTaken {  // bytes in all that the master has taken over this link
+    std::uint64_t bytes = 0;
 };
 struct PauseBulk {};  // the master has not authenticated the bulk link yet
 struct OpenBulk {     // resumes it; the token is sent first
@@ -49,8 +55,9 @@ struct Report {
     wire::Severity severity = wire::Severity::Info;
     std::string text;
 };
-using Action = std::variant<SendControl, SendBulk, SendFilm, PauseBulk, OpenBulk, DiscardPendingFilm,
-                            Reconnect, Render, StopUnit, BuildScene, LoadBlobs, SaveBlob, Report>;
+using Action =
+    std::variant<SendControl, SendBulk, SendFilm, PauseBulk, OpenBulk, DiscardPendingFilm, Reconnect,
+                 WithdrawFilm, FilmTaken, Render, StopUnit, BuildScene, LoadBlobs, SaveBlob, Report>;
 
 // Actions requested by the parts of the state machine, in order, and their counters.
 struct Effects {

@@ -9,6 +9,7 @@
 
 #include "mediator/backend/catalog.h"
 #include "mediator/program/command_line.h"
+#include "mediator/wire/peer_messages.h"
 
 namespace tessera::node {
 
@@ -43,7 +44,7 @@ std::optional<int> parse_options(int argc, const char* const* argv, NodeOptions&
     for (const backend::BackendEntry& entry : backend::catalog()) backends.push_back(entry.name);
     options.backend = backends.front();
     options.host = host_name();
-    std::string cost = "0s";
+    std::string cost = "0s", drain = "hand-back";
 
     cli::CommandLine line("tessera-node", "Renders for a master with one back-end.");
     line.option("--master", "the master's address: tcp://host:port", options.master);
@@ -64,6 +65,11 @@ std::optional<int> parse_options(int argc, const char* const* argv, NodeOptions&
                 options.cache_mib);
     line.option("--memory", "MiB of blobs in memory; above it unused ones are dropped", options.memory_mib);
     line.option("--name", "name of this node in logs and status; default: the host's name", options.name);
+    line.choice(
+        "--drain",
+        "when it is asked to stop: hand-back sends the samples rendered so far within 3 s, finish renders "
+        "its units to the end first",
+        drain, {"hand-back", "finish"});
     line.option("--simulate-cost", "back-end null only: time per sample of a pixel, like 20us", cost);
     line.choice("--log-level", "log verbosity", options.log.level, cli::log_levels());
     line.option("--log-file", "write the log there instead of standard error", options.log.file);
@@ -91,10 +97,13 @@ std::optional<int> parse_options(int argc, const char* const* argv, NodeOptions&
         !fine) {
         return usage(fine.error().what());
     }
+    if (drain == "finish") options.drain = Drain::Finish;
     const Expected<Duration> simulated = parse_duration(cost);
     if (!simulated) return usage(std::string("--simulate-cost: ") + simulated.error().what());
     options.simulated_cost = *simulated;
     if (options.name.empty()) options.name = options.host;
+    if (options.name.size() > wire::MaxNameBytes)
+        return usage("--name is longer than " + std::to_string(wire::MaxNameBytes) + " bytes");
     return std::nullopt;
 }
 

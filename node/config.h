@@ -7,6 +7,7 @@
 #include "mediator/base/clock.h"
 #include "mediator/base/error.h"
 #include "mediator/program/log.h"
+#include "node/settings.h"
 
 namespace tessera::node {
 
@@ -16,6 +17,7 @@ struct NodeOptions {
     std::string keys;           // a folder; "" only with `insecure`
     std::string user = "node";  // name of the key pair in that folder
     bool insecure = false;
+    Drain drain = Drain::HandBack;
     std::uint32_t threads = 0;
     std::string isa, device;
     std::string cache;                                  // "" = none

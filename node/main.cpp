@@ -1,13 +1,13 @@
-#include <signal.h>
 #include <unistd.h>
 
 #include <iostream>
-#include <thread>
+#include <stop_token>
 
 #include "mediator/backend/catalog.h"
 #include "mediator/base/malloc_trim.h"
 #include "mediator/net/zmq_channel.h"
 #include "mediator/program/command_line.h"
+#include "mediator/program/signals.h"
 #include "node/config.h"
 #include "node/render_node.h"
 
@@ -34,33 +34,14 @@ node::NodeSettings node_settings(const node::NodeOptions& options) {
                                 .backend = options.backend,
                                 .reproducible = options.isa == "avx2" || options.backend == "null",
                                 .workers = options.threads,
-                                .store_limit = options.memory_mib << 20};
+                                .store_limit = options.memory_mib << 20,
+                                .drain = options.drain};
     if (!options.cache.empty()) settings.cache = options.cache;
     settings.cache_limit = options.cache_mib << 20;
     return settings;
 }
 
-// First signal: drain. Second: leave at once. SIGUSR1, sent by this program, ends the wait.
-class SignalThread {
-  public:
-    explicit SignalThread(const sigset_t& signals) : thread_([this, signals] { wait(signals); }) {}
-    ~SignalThread() {
-        ::pthread_kill(thread_.native_handle(), SIGUSR1);
-        thread_.join();
-    }
-    std::stop_source drain, at_once;
-
-  private:
-    void wait(const sigset_t& signals) {
-        int signal = 0;
-        while (sigwait(&signals, &signal) == 0 && signal != SIGUSR1) {
-            if (!drain.request_stop()) at_once.request_stop();
-        }
-    }
-    std::thread thread_;
-};
-
-int serve(const node::NodeOptions& options, const sigset_t& signals) {
+int serve(const node::NodeOptions& options) {
     const cli::Log log(options.log);
     const auto blobs = std::make_shared<scene::BlobStore>();
     auto backend = backend::find_backend(options.backend)
@@ -82,8 +63,11 @@ int serve(const node::NodeOptions& options, const sigset_t& signals) {
     node::RenderNode node(std::move(channel), std::move(backend), blobs, clock, node_settings(options),
                           {.event = [&log](const node::Report& report) { log_report(log, report); },
                            .reconnect = [sockets] { sockets->reconnect(); }});
-    SignalThread waiting(signals);
-    const node::NodeResult result = node.run(waiting.drain.get_token(), waiting.at_once.get_token());
+    std::stop_source leave, at_once;
+    const cli::SignalThread signals({.stop = [&] { leave.request_stop(); },
+                                     .stop_at_once = [&] { at_once.request_stop(); },
+                                     .reload = {}});
+    const node::NodeResult result = node.run(leave.get_token(), at_once.get_token());
     log.info("left after " + std::to_string(result.counters.units_done) + " units");
     return result.failure.empty() ? 0 : cli::ExitRefused;
 }
@@ -92,16 +76,12 @@ int serve(const node::NodeOptions& options, const sigset_t& signals) {
 
 int main(int argc, char** argv) {
     tessera::disable_malloc_trim();
-    // Before any thread starts, so that none of them is interrupted: one thread waits for signals.
-    sigset_t signals;
-    sigemptyset(&signals);
-    for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaddset(&signals, signal);
-    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    cli::block_signals();
 
     node::NodeOptions options;
     if (const auto exit = node::parse_options(argc, argv, options, std::cout, std::cerr)) return *exit;
     try {
-        return serve(options, signals);
+        return serve(options);
     } catch (const Error& error) {
         std::cerr << "tessera-node: " << error.what() << "\n";
         return error.code() == ErrorCode::InvalidInput ? 2 : cli::ExitUnavailable;

@@ -97,7 +97,7 @@ void NodeStateMachine::on(wire::Heartbeat& beat, TimePoint now) {
 }
 
 void NodeStateMachine::on(wire::Leave&, TimePoint now) {
-    if (!leaving_) leave("the master requested it", now);
+    if (!leaving_) leave("the master requested it", Drain::Finish, now);
 }
 
 void NodeStateMachine::on(wire::Goodbye& goodbye, TimePoint now) {
@@ -132,6 +132,10 @@ void NodeStateMachine::on(wire::CancelUnits& cancel, TimePoint) {
     units_.cancel(cancel);
 }
 
+void NodeStateMachine::on(wire::FilmTaken& taken, TimePoint) {
+    effects_.add(FilmTaken{taken.bytes});
+}
+
 void NodeStateMachine::bulk(wire::BulkMessage&& message, TimePoint now) {
     if (left_) return;
     liveness_.on_message(now);
@@ -152,24 +156,26 @@ void NodeStateMachine::looked_up(const std::vector<scene::BlobRef>& blobs, TimeP
 void NodeStateMachine::step_scene(TimePoint now) {
     if (left_ || leaving_) return;
     if (scene_.advance(now)) units_.version_ends();
-    if (!scene_.failure().empty()) fail(scene_.failure());
 }
 
 void NodeStateMachine::built(BuildOutcome&& outcome, TimePoint now) {
     if (left_) return;
     if (scene_.built(std::move(outcome), now)) units_.recheck_waiting();
-    if (!scene_.failure().empty()) return fail(scene_.failure());
     step_scene(now);
 }
 
-void NodeStateMachine::finished(UnitId unit, UnitOutcome&& outcome, TimePoint) {
+void NodeStateMachine::finished(UnitId unit, UnitOutcome&& outcome, TimePoint now) {
     if (left_) return;
-    units_.finished(unit, std::move(outcome));
+    units_.finished(unit, std::move(outcome), now);
     dispatch();
 }
 
 void NodeStateMachine::film_sent(UnitId unit) {
     units_.film_sent(unit);
+}
+
+void NodeStateMachine::film_withdrawn(UnitId unit) {
+    units_.film_withdrawn(unit);
 }
 
 void NodeStateMachine::dispatch() {
@@ -208,7 +214,8 @@ void NodeStateMachine::heartbeat(TimePoint now) {
                                   .version = scene_.replica().version(),
                                   .in_flight = units_.in_flight(),
                                   .free_slots = leaving_ ? 0 : units_.free_slots(),
-                                  .last_work_sequence = units_.last_sequence()});
+                                  .last_work_sequence = units_.last_sequence(),
+                                  .scene_bytes = scene_.received_bytes()});
 }
 
 void NodeStateMachine::maintain_link(TimePoint now) {
@@ -236,18 +243,26 @@ void NodeStateMachine::tick(TimePoint now) {
         if (left_) return;
         scene_.keep_fetching(now);
     }
+    units_.send_ready(now);
     dispatch();
     maintain_link(now);
-    if (leaving_ && units_.empty()) leave_now(leave_reason_);
+    if (leaving_ && (units_.empty() || (leave_by_ && now >= *leave_by_))) leave_now(leave_reason_);
 }
 
-void NodeStateMachine::leave(const std::string& reason, TimePoint now) {
+void NodeStateMachine::leave(const std::string& reason, Drain drain, TimePoint now) {
     if (left_) return;
     leave_reason_ = reason;
     if (leaving_ || !welcomed_) return leave_now(reason);
     leaving_ = true;
-    effects_.report(wire::Severity::Info, "leaving: " + reason + "; finishing what is being rendered");
+    const bool finishes = drain == Drain::Finish;
+    effects_.report(wire::Severity::Info, "leaving: " + reason +
+                                              (finishes ? "; finishing what is being rendered"
+                                                        : "; handing back what is being rendered"));
     units_.release_waiting(wire::ReleaseReason::Leaving, "the node leaves");
+    if (!finishes) {
+        units_.hand_back();
+        leave_by_ = now + LeaveLimit;
+    }
     heartbeat(now);
 }
 
@@ -268,6 +283,8 @@ void NodeStateMachine::fail(const std::string& reason) {
 TimePoint NodeStateMachine::next_event(TimePoint now) const {
     TimePoint next = reconnect_at_ ? *reconnect_at_ : liveness_.next_event();
     if (const auto due = scene_.next_event(now)) next = std::min(next, *due);
+    if (leave_by_) next = std::min(next, *leave_by_);
+    if (const auto due = units_.next_event()) next = std::min(next, std::max(now, *due));
     return std::clamp(next, now, now + Forever);
 }
 

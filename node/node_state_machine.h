@@ -37,10 +37,11 @@ class NodeStateMachine {
     void malformed(const std::string& reason, TimePoint now);
     void finished(UnitId unit, UnitOutcome&& outcome, TimePoint now);
     void film_sent(UnitId unit);
+    void film_withdrawn(UnitId unit);
     void built(BuildOutcome&& outcome, TimePoint now);
     void looked_up(const std::vector<scene::BlobRef>& blobs, TimePoint now);
-    void leave(const std::string& reason, TimePoint now);  // a second call leaves immediately
-    void tick(TimePoint now);                              // after every other call, and at next_event()
+    void leave(const std::string& reason, Drain drain, TimePoint now);  // a second call leaves immediately
+    void tick(TimePoint now);  // after every other call, and at next_event()
 
     std::vector<Action> take_actions() { return std::exchange(effects_.actions, {}); }
     TimePoint next_event(TimePoint now) const;
@@ -72,6 +73,7 @@ class NodeStateMachine {
     void on(wire::CloseView& close, TimePoint now);
     void on(wire::Work& work, TimePoint now);
     void on(wire::CancelUnits& cancel, TimePoint now);
+    void on(wire::FilmTaken& taken, TimePoint now);
     template <class Other>
     void on(Other&, TimePoint now) {
         malformed("unexpected message from the master", now);
@@ -86,6 +88,7 @@ class NodeStateMachine {
     net::Liveness liveness_;
 
     bool welcomed_ = false, leaving_ = false, left_ = false;
+    std::optional<TimePoint> leave_by_;  // leaves then, whatever is still being sent
     std::string leave_reason_, failure_text_;
     std::uint64_t number_ = 0, token_ = 0, epoch_ = 0;
     Duration heartbeat_interval_;

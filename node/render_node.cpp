@@ -65,10 +65,11 @@ class RenderNode::Loop {
         bool asked = false;
         while (machine_.state() != NodeStateMachine::State::Left) {
             if (drain.stop_requested() && !std::exchange(asked, true)) {
-                machine_.leave("asked to stop", node_.clock_.now());
+                machine_.leave("asked to stop", node_.settings_.drain, node_.clock_.now());
             }
             if (at_once.stop_requested()) {
-                for (int i = 0; i < 2; ++i) machine_.leave("asked to stop immediately", node_.clock_.now());
+                for (int i = 0; i < 2; ++i)
+                    machine_.leave("asked to stop immediately", node_.settings_.drain, node_.clock_.now());
                 asked = true;
             }
             take_events();
@@ -96,13 +97,12 @@ class RenderNode::Loop {
     }
 
     void act() {
-        bool film_went = true;
-        while (film_went) {
+        for (bool film_went = true; film_went || std::exchange(film_withdrawn_, false);) {
             machine_.tick(node_.clock_.now());
             for (Action& action : machine_.take_actions()) {
                 std::visit([this](auto& what) { perform(what); }, action);
             }
-            const std::vector<UnitId> sent = outbox_.flush();
+            const std::vector<UnitId> sent = outbox_.flush(node_.clock_.now());
             for (const UnitId unit : sent) machine_.film_sent(unit);
             film_went = !sent.empty();
         }
@@ -143,8 +143,15 @@ class RenderNode::Loop {
         std::vector<net::Bytes> parts;
         for (wire::FilmPart& part : film.parts)
             parts.push_back(wire::encode(wire::BulkMessage(std::move(part))));
-        outbox_.film(film.unit, std::move(parts));
+        outbox_.film(std::move(film.units), std::move(parts));
     }
+    void perform(WithdrawFilm& film) {
+        for (const UnitId unit : outbox_.withdraw(film.unit)) {
+            machine_.film_withdrawn(unit);
+            film_withdrawn_ = true;
+        }
+    }
+    void perform(FilmTaken& taken) { outbox_.film_taken(taken.bytes, node_.clock_.now()); }
     void perform(OpenBulk& open) {
         outbox_.open(wire::encode(wire::BulkMessage(wire::BulkHello{open.token})));
     }
@@ -191,13 +198,14 @@ class RenderNode::Loop {
         const TimePoint limit = node_.clock_.now() + FlushLimit;
         while (outbox_.blocked() && node_.clock_.now() < limit) {
             std::this_thread::sleep_for(BlockedPause);
-            outbox_.flush();
+            (void)outbox_.flush(node_.clock_.now());
         }
     }
 
     RenderNode& node_;
     NodeStateMachine machine_;
     Outbox outbox_;
+    bool film_withdrawn_ = false;  // the machine has actions about it
     TaskThread builder_;
     TaskThread cache_thread_;  // for disk access, so that builds do not wait for saves
     WorkerPool workers_;       // destroyed first: a build waits for the units being rendered

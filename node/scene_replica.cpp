@@ -123,6 +123,13 @@ std::vector<scene::BlobRef> SceneReplica::missing() const {
     return {missing.begin(), missing.end()};
 }
 
+bool SceneReplica::awaits_list(const Hash256& hash) const {
+    return std::any_of(announced_lists_.begin(), announced_lists_.end(), [&](const Announced& item) {
+        const auto* blob = std::get_if<scene::BlobRef>(&item.content);
+        return blob && blob->hash == hash;
+    });
+}
+
 // How many of the applied lists, from the first, give a scene whose blobs are all in the store.
 std::size_t SceneReplica::buildable() const {
     std::size_t count = 0, lacking = 0;
@@ -175,17 +182,7 @@ bool SceneReplica::built() {
     return true;
 }
 
-bool SceneReplica::failed() {
-    building_ = false;
-    if (!building_target_) return false;
-    building_target_.reset();
-    built_ = {};
-    built_hash_ = {};
-    discard();
-    return true;
-}
-
-bool SceneReplica::rejected_out_of_memory() {
+bool SceneReplica::rejected() {
     building_ = false;
     if (!building_target_) return false;
     discard();

@@ -37,6 +37,9 @@ class SceneReplica {
     // Blobs to fetch for the announced and applied lists, each once.
     std::vector<scene::BlobRef> missing() const;
 
+    bool awaits_list(
+        const Hash256& blob) const;  // whether the blob is an announced list, not a mesh or texture
+
     // The lists that the back-end can build now, returned once, each with the scene after it.
     struct Step {
         scene::ChangeList list;
@@ -50,14 +53,15 @@ class SceneReplica {
     };
     std::optional<Build> take_build();
     bool is_building() const { return building_; }
-    bool built();                   // the back-end is at the build's version now
-    bool failed();                  // the back-end's state is unknown: a snapshot is needed
-    bool rejected_out_of_memory();  // the back-end kept its previous version; the next snapshot may fit
-    // All three return false if the build was of another epoch and its result is meaningless.
+    bool built();     // the back-end is at the build's version now
+    bool rejected();  // the back-end kept its previous version; it may be able to build the next snapshot
+    // Both return false if the build was of another epoch and its result is meaningless.
 
     // Waits for the next snapshot; lists that follow the current version are gaps until then.
     void await_snapshot();
     bool awaits_snapshot() const { return awaits_snapshot_; }
+    // Discards all lists that are not built, since one of them cannot be fetched, and waits for a snapshot.
+    void discard();
 
     Version version() const { return built_; }  // built by the back-end with all blobs
     Hash128 state_hash() const { return built_hash_; }
@@ -80,7 +84,6 @@ class SceneReplica {
     CheckResult announce(Announced item);
     Expected<void> apply(scene::ChangeList list);
     std::size_t buildable() const;
-    void discard();
     bool here(const scene::BlobRef& blob) const { return blob.empty() || blobs_->find(blob.hash) != nullptr; }
 
     std::shared_ptr<scene::BlobStore> blobs_;

@@ -56,7 +56,7 @@ void SceneSync::on_checked(SceneReplica::CheckResult result, Version from, Versi
     switch (result) {
         case SceneReplica::CheckResult::Accepted:
             snapshot_retry_at_.reset();
-            too_large_.reset();
+            refused_.reset();
             if (from.number == 0) lists_received_.clear();  // a snapshot supersedes everything before it
             lists_received_.emplace_back(to, now);
             effects_.state_changed = true;
@@ -66,9 +66,9 @@ void SceneSync::on_checked(SceneReplica::CheckResult result, Version from, Versi
             if (to == replica_.version()) send_version_report();  // the last one may have been lost
             break;
         case SceneReplica::CheckResult::Gap:
-            if (too_large_ && to != *too_large_) {
-                too_large_.reset();
-                ask_for_snapshot("version " + std::to_string(to.number) + " may fit", now);
+            if (refused_ && to != *refused_) {
+                refused_.reset();
+                ask_for_snapshot("version " + std::to_string(to.number) + " may be possible", now);
             } else if (!replica_.awaits_snapshot()) {
                 ask_for_snapshot(to.epoch != epoch_
                                      ? "a change list of another epoch"
@@ -98,32 +98,26 @@ void SceneSync::ask_for_snapshot(const std::string& reason, TimePoint now) {
     effects_.send(wire::Resync{replica_.version(), reason});
 }
 
-void SceneSync::failed(const std::string& reason, Version at, TimePoint now) {
-    if (failed_at_ == at) {
-        failure_ = "the scene failed twice at version " + std::to_string(at.number) + ": " + reason +
-                   "; check that master and node are the same build";
-        return;
-    }
+// A list may have been damaged, which a snapshot repairs. If that is no better, master and node disagree.
+void SceneSync::not_applied(const std::string& reason, Version at, TimePoint now) {
+    if (failed_at_ == at) return refuse(reason + "; check that master and node are the same build", at);
     failed_at_ = at;
     effects_.report(wire::Severity::Warning,
                     "version " + std::to_string(at.number) + " could not be applied: " + reason);
     ask_for_snapshot(reason, now);
 }
 
-// The back-end has kept its previous version. The next version may be smaller; until it arrives no snapshot is
-// requested.
-void SceneSync::too_large(const std::string& reason, Version at) {
-    too_large_ = at;
+// The next version may be possible; until it arrives no snapshot is requested.
+void SceneSync::refuse(const std::string& reason, Version at) {
+    refused_ = at;
     effects_.report(wire::Severity::Warning, "version " + std::to_string(at.number) + ": " + reason +
                                                  "; this node waits for another version");
-    effects_.send(wire::SceneRefused{at, reason});
+    effects_.send(wire::SceneRefused{at, reason.substr(0, MaxTextLength)});
 }
 
 bool SceneSync::advance(TimePoint now) {
-    if (const Expected<void> done = replica_.advance(); !done) {
-        failed(done.error().what(), replica_.refused_version(), now);
-        if (!failure_.empty()) return false;
-    }
+    if (const Expected<void> done = replica_.advance(); !done)
+        not_applied(done.error().what(), replica_.refused_version(), now);
     want(replica_.missing());
     std::optional<SceneReplica::Build> build = replica_.take_build();
     if (!build) return false;
@@ -135,13 +129,8 @@ bool SceneSync::advance(TimePoint now) {
 bool SceneSync::built(BuildOutcome&& built, TimePoint now) {
     effects_.state_changed = true;
     if (!built.report) {
-        const Error& error = built.report.error();
         const Version at = replica_.announced();
-        if (error.code() == ErrorCode::OutOfMemory) {
-            if (replica_.rejected_out_of_memory()) too_large(error.what(), at);
-        } else if (replica_.failed()) {
-            failed("the back-end failed: " + std::string(error.what()), at, now);
-        }
+        if (replica_.rejected()) refuse(built.report.error().what(), at);
         return false;
     }
     if (!replica_.built()) return false;
@@ -217,6 +206,13 @@ bool SceneSync::chunk(wire::BlobChunk&& chunk, TimePoint now) {
 void SceneSync::absent(const wire::BlobAbsent& absent, TimePoint now) {
     if (!wanted_.contains(absent.hash)) return;
     fetcher_.absent(absent.hash);
+    // The master keeps long lists for the latest version only: asking again would not help.
+    if (replica_.awaits_list(absent.hash)) {
+        wanted_.erase(absent.hash);
+        fetcher_.forget(absent.hash);
+        replica_.discard();
+        return ask_for_snapshot("a change list is no longer kept", now);
+    }
     if (absent_retry_at_) return;
     effects_.report(wire::Severity::Warning,
                     "the master lacks blob " + to_hex(absent.hash) + "; asking again");

@@ -17,7 +17,8 @@ struct BuildOutcome {
 };
 
 // Keeps the scene in sync with the master's: checks change lists, fetches their blobs, has the back-end build complete
-// lists, and reports the built version. Pure; single-threaded.
+// lists, and reports the built version. A version that cannot be built is refused with the reason: the node keeps the one
+// before and waits for the next. Pure; single-threaded.
 class SceneSync {
   public:
     SceneSync(const NodeSettings& settings, std::shared_ptr<scene::BlobStore> blobs, Effects& effects);
@@ -36,16 +37,15 @@ class SceneSync {
     bool advance(TimePoint now);
     void keep_fetching(TimePoint now);
 
-    // Not empty: the scene failed twice at one version, and the node has to leave.
-    const std::string& failure() const { return failure_; }
     const SceneReplica& replica() const { return replica_; }
+    std::uint64_t received_bytes() const { return fetcher_.received_bytes(); }  // of blobs, since the start
     std::optional<TimePoint> next_event(TimePoint now) const;
 
   private:
     void on_checked(SceneReplica::CheckResult result, Version from, Version to, TimePoint now);
     std::int64_t received_at(Version to);  // and forgets the lists up to `to`
-    void failed(const std::string& reason, Version at, TimePoint now);
-    void too_large(const std::string& reason, Version at);
+    void not_applied(const std::string& reason, Version at, TimePoint now);
+    void refuse(const std::string& reason, Version at);
     void ask_for_snapshot(const std::string& reason, TimePoint now);
     void send_version_report();
     void want(const std::vector<scene::BlobRef>& blobs);
@@ -61,12 +61,11 @@ class SceneSync {
     Duration heartbeat_interval_;
     std::set<Hash256> wanted_, looked_up_;
     std::optional<TimePoint> snapshot_retry_at_, absent_retry_at_;
-    Version failed_at_;                 // the version of the last failure
-    std::optional<Version> too_large_;  // does not fit into device memory
+    Version failed_at_;               // the version that could not be applied last
+    std::optional<Version> refused_;  // the back-end cannot build it, or it does not match its hash
     std::deque<std::pair<Version, TimePoint>>
         lists_received_;  // versions of lists that are not built, and when they arrived
     wire::VersionReport latest_report_;
-    std::string failure_;
 };
 
 }  // namespace tessera::node

@@ -10,6 +10,13 @@
 
 namespace tessera::node {
 
+// What a node does with the units it is rendering when it is asked to stop.
+enum class Drain : std::uint8_t {
+    HandBack,  // sends the samples rendered so far, within LeaveLimit
+    Finish,    // renders them to the end
+};
+inline constexpr Duration LeaveLimit = std::chrono::seconds(3);
+
 struct NodeSettings {
     std::string name = "node", host{}, software = "tessera";
     std::uint64_t pid = 0;
@@ -22,6 +29,7 @@ struct NodeSettings {
     std::uint64_t cache_limit = 4ull << 30;        // bytes
     std::uint64_t store_limit =
         0;  // bytes of blobs above which unused ones are dropped; 0 = never (a shared store)
+    Drain drain = Drain::HandBack;
 };
 
 struct NodeCounters {

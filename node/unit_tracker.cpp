@@ -10,6 +10,8 @@ namespace {
 
 constexpr std::size_t MaxViews = 256;
 constexpr std::uint32_t MaxBlockLevel = 24;
+constexpr Duration MaxHold = std::chrono::seconds(10);
+constexpr std::size_t MaxHeldUnits = 256;
 constexpr std::size_t UnitsInGoodbye = 1024;
 constexpr std::size_t FilmLimit = net::BulkLimit - 4096;  // without the header of a film part
 
@@ -51,16 +53,18 @@ void UnitTracker::open(const wire::OpenView& open) {
         return effects_.report(wire::Severity::Error, "the master opened more than " +
                                                           std::to_string(MaxViews) + " views; close some");
     }
-    if (known != views_.end() && known->second.revision >= open.view.revision)
+    if (known != views_.end() && known->second.view.revision >= open.view.revision)
         return;  // a delayed older revision
-    views_[open.view.id] = open.view;
+    views_[open.view.id] = {open.view, std::min(open.hold_film, MaxHold)};
     release_waiting(wire::ReleaseReason::Cancelled, "the view has a newer revision", open.view.id);
+    release_held(open.view.id, "the view has a newer revision");
     stop_of(open.view.id);
 }
 
 void UnitTracker::close(const wire::CloseView& close) {
     if (views_.erase(close.view) == 0) return;
     release_waiting(wire::ReleaseReason::Cancelled, "the view was closed", close.view);
+    release_held(close.view, "the view was closed");
     stop_of(close.view);
 }
 
@@ -88,9 +92,10 @@ std::optional<std::pair<wire::ReleaseReason, std::string>> UnitTracker::objectio
     const auto view = views_.find(unit.view);
     if (view == views_.end())
         return ReleaseCause{wire::ReleaseReason::UnknownView, "the view was never opened"};
-    if (view->second.revision != unit.revision) {
+    const view::View& opened = view->second.view;
+    if (opened.revision != unit.revision) {
         return ReleaseCause{wire::ReleaseReason::UnknownView,
-                            "the view is at revision " + std::to_string(view->second.revision)};
+                            "the view is at revision " + std::to_string(opened.revision)};
     }
     const bool is_present = unit.version == replica_.version() && !replica_.is_building();
     const bool will_come = unit.version.epoch == epoch_ && unit.version.number > replica_.version().number &&
@@ -99,9 +104,8 @@ std::optional<std::pair<wire::ReleaseReason, std::string>> UnitTracker::objectio
         return ReleaseCause{wire::ReleaseReason::OtherVersion,
                             "the node is at version " + std::to_string(replica_.version().number)};
     }
-    const std::size_t film = unit.tile.pixel_count() * 4 * (1 + view->second.channels.plane_count());
-    if (unit.tile.empty() || !(intersection(unit.tile, view->second.window) == unit.tile) ||
-        film > FilmLimit) {
+    const std::size_t film = unit.tile.pixel_count() * 4 * (1 + opened.channels.plane_count());
+    if (unit.tile.empty() || !(intersection(unit.tile, opened.window) == unit.tile) || film > FilmLimit) {
         return ReleaseCause{wire::ReleaseReason::Failed,
                             "its tile is empty, outside the view, or too large for one message of film"};
     }
@@ -119,6 +123,15 @@ void UnitTracker::cancel(const wire::CancelUnits& cancel) {
             release(unit, wire::ReleaseReason::Cancelled, "cancelled");
         } else if (queue_.is_rendering(unit)) {
             stop(unit, wire::ReleaseReason::Cancelled);
+        } else if (auto held = held_.take(unit)) {
+            // The master may still need the others that it is merged with.
+            if (held->units.size() == 1) {
+                release(unit, wire::ReleaseReason::Cancelled, "cancelled");
+            } else {
+                send_held(*std::move(held));
+            }
+        } else if (queue_.is_sending(unit)) {
+            effects_.add(WithdrawFilm{unit});
         }
     }
 }
@@ -136,10 +149,20 @@ void UnitTracker::release_waiting(wire::ReleaseReason reason, const std::string&
     }
 }
 
+void UnitTracker::release_held(ViewId view, const std::string& message) {
+    for (const HeldFilm::Item& item : held_.take_view(view)) {
+        for (const UnitId unit : item.units) release(unit, wire::ReleaseReason::Cancelled, message);
+    }
+}
+
 void UnitTracker::stop_of(ViewId view) {
     for (const view::WorkUnit& unit : queue_.rendering()) {
         if (unit.view == view) stop(unit.id, wire::ReleaseReason::Cancelled);
     }
+}
+
+void UnitTracker::hand_back() {
+    for (const view::WorkUnit& unit : queue_.rendering()) stop(unit.id, wire::ReleaseReason::Leaving);
 }
 
 void UnitTracker::stop_all() {
@@ -180,6 +203,7 @@ void UnitTracker::abandon() {
         if (!queue_.is_rendering(unit)) queue_.release(unit);
     }
     release_after_film_.clear();
+    (void)held_.take_all();
     sent_.clear();
     views_.clear();
     effects_.add(DiscardPendingFilm{});
@@ -188,11 +212,11 @@ void UnitTracker::abandon() {
 void UnitTracker::dispatch() {
     if (replica_.is_building()) return;
     while (const auto unit = queue_.next(replica_.version())) {
-        effects_.add(Render{views_.at(unit->view), *unit});
+        effects_.add(Render{views_.at(unit->view).view, *unit});
     }
 }
 
-void UnitTracker::finished(UnitId id, UnitOutcome&& outcome) {
+void UnitTracker::finished(UnitId id, UnitOutcome&& outcome, TimePoint now) {
     const std::optional<view::WorkUnit> unit = queue_.rendered(id);
     if (!unit) return;
     effects_.state_changed = true;
@@ -209,36 +233,86 @@ void UnitTracker::finished(UnitId id, UnitOutcome&& outcome) {
         release(id, wire::ReleaseReason::OtherVersion, "the back-end is at another version");
     } else {
         const auto view = views_.find(unit->view);
-        const bool wanted = view != views_.end() && view->second.revision == unit->revision;
-        const bool whole = outcome.result.status == backend::RenderStatus::Done;
+        const bool wanted = view != views_.end() && view->second.view.revision == unit->revision;
+        const bool whole =
+            outcome.result.status == backend::RenderStatus::Done && outcome.result.blocks.size() == 1;
         const auto reason = stopped ? stopped.mapped() : wire::ReleaseReason::Cancelled;
         if (!wanted || outcome.result.blocks.empty()) {
             release(id, reason, "stopped");
+        } else if (whole) {
+            queue_.hold(id);
+            held_.add({.unit = unit->id,
+                       .view = unit->view,
+                       .revision = unit->revision,
+                       .version = unit->version,
+                       .rays = outcome.result.rays,
+                       .busy_ns = static_cast<std::uint64_t>(outcome.busy.count()),
+                       .film = std::move(outcome.result.blocks.front())},
+                      now);
+            send_ready(now);
         } else {
-            if (!whole)
-                release_after_film_.emplace(
-                    id, wire::UnitReleased{id, reason, "stopped; its whole blocks were sent"});
-            send_film(*unit, std::move(outcome));
+            release_after_film_.emplace(
+                id, wire::UnitReleased{id, reason, "stopped; its whole blocks were sent"});
+            send_parts(*unit, std::move(outcome));
         }
     }
 }
 
-void UnitTracker::send_film(const view::WorkUnit& unit, UnitOutcome&& outcome) {
-    SendFilm film{unit.id, {}};
-    const auto parts = static_cast<std::uint16_t>(outcome.result.blocks.size());
-    for (std::uint16_t part = 0; part < parts; ++part) {
-        const bool first = part == 0;
+void UnitTracker::send_ready(TimePoint now) {
+    if (held_.empty()) return;
+    const auto is_coming = [&](const wire::FilmPart& film) {
+        const auto in_other_half = [&](const view::WorkUnit& unit) {
+            return !stopping_.contains(unit.id) && is_in_other_half(film, unit);
+        };
+        const std::vector<view::WorkUnit> waiting = queue_.waiting(), rendering = queue_.rendering();
+        return std::any_of(waiting.begin(), waiting.end(), in_other_half) ||
+               std::any_of(rendering.begin(), rendering.end(), in_other_half);
+    };
+    const auto limit = [&](ViewId view) {
+        const auto opened = views_.find(view);
+        return opened == views_.end() ? Duration::zero() : opened->second.hold_film;
+    };
+    for (HeldFilm::Item& item : held_.take_ready(is_coming, limit, now)) send_held(std::move(item));
+    if (held_.unit_count() > MaxHeldUnits) send_all_held();
+}
+
+std::optional<TimePoint> UnitTracker::next_event() const {
+    constexpr Duration Step = std::chrono::milliseconds(50);  // limits differ by view
+    const auto oldest = held_.oldest();
+    return oldest ? std::optional(*oldest + Step) : std::nullopt;
+}
+
+void UnitTracker::send_all_held() {
+    for (HeldFilm::Item& item : held_.take_all()) send_held(std::move(item));
+}
+
+void UnitTracker::send_held(HeldFilm::Item&& item) {
+    for (const UnitId unit : item.units) queue_.unhold(unit);
+    SendFilm film{std::move(item.units), {}};
+    film.parts.push_back(std::move(item.film));
+    effects_.add(std::move(film));
+}
+
+// The whole blocks of a stopped unit.
+void UnitTracker::send_parts(const view::WorkUnit& unit, UnitOutcome&& outcome) {
+    SendFilm film{{unit.id}, {}};
+    for (frame::FilmTile& block : outcome.result.blocks) {
+        const bool is_first = film.parts.empty();
         film.parts.push_back({.unit = unit.id,
                               .view = unit.view,
                               .revision = unit.revision,
                               .version = unit.version,
-                              .part = part,
-                              .parts = parts,
-                              .rays = first ? outcome.result.rays : 0,
-                              .busy_ns = first ? static_cast<std::uint64_t>(outcome.busy.count()) : 0,
-                              .film = std::move(outcome.result.blocks[part])});
+                              .units = 0,
+                              .rays = is_first ? outcome.result.rays : 0,
+                              .busy_ns = is_first ? static_cast<std::uint64_t>(outcome.busy.count()) : 0,
+                              .film = std::move(block)});
     }
     effects_.add(std::move(film));
+}
+
+void UnitTracker::film_withdrawn(UnitId unit) {
+    release_after_film_.erase(unit);
+    release(unit, wire::ReleaseReason::Cancelled, "cancelled");
 }
 
 void UnitTracker::film_sent(UnitId unit) {

@@ -18,7 +18,7 @@ auto with_id(UnitId id) {
 WorkQueue::AdmitResult WorkQueue::admit(std::uint64_t sequence, const view::WorkUnit& unit) {
     if (sequence <= last_sequence_) return AdmitResult::Duplicate;
     last_sequence_ = sequence;
-    if (is_waiting(unit.id) || is_rendering(unit.id) || sending_.contains(unit.id))
+    if (is_waiting(unit.id) || is_rendering(unit.id) || held_.contains(unit.id) || sending_.contains(unit.id))
         return AdmitResult::Duplicate;
     if (waiting_.size() >= slots_ + Overrun) return AdmitResult::Full;
     waiting_.push_back(unit);
@@ -44,8 +44,17 @@ std::optional<view::WorkUnit> WorkQueue::rendered(UnitId id) {
     return unit;
 }
 
+void WorkQueue::hold(UnitId id) {
+    if (sending_.erase(id) > 0) held_.insert(id);
+}
+
+void WorkQueue::unhold(UnitId id) {
+    if (held_.erase(id) > 0) sending_.insert(id);
+}
+
 void WorkQueue::release(UnitId id) {
     std::erase_if(waiting_, with_id(id));
+    held_.erase(id);
     sending_.erase(id);
 }
 
@@ -59,6 +68,7 @@ bool WorkQueue::is_rendering(UnitId id) const {
 
 std::vector<UnitId> WorkQueue::in_flight() const {
     std::vector<UnitId> ids(sending_.begin(), sending_.end());
+    ids.insert(ids.end(), held_.begin(), held_.end());
     for (const view::WorkUnit& unit : waiting_) ids.push_back(unit.id);
     for (const view::WorkUnit& unit : rendering_) ids.push_back(unit.id);
     std::sort(ids.begin(), ids.end());

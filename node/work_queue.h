@@ -10,7 +10,7 @@
 
 namespace tessera::node {
 
-// The units in flight on a node: waiting, being rendered, or rendered with film still to be sent. Credits are absolute
+// The units in flight on a node: waiting, being rendered, or rendered with film held or still to be sent. Credits are absolute
 // (slots less units in flight), so a lost message does no harm. Pure; single-threaded.
 class WorkQueue {
   public:
@@ -28,15 +28,19 @@ class WorkQueue {
     std::optional<view::WorkUnit> next(Version version);
     // The worker is free again; the unit stays in flight until released.
     std::optional<view::WorkUnit> rendered(UnitId unit);
+    // Its film waits for that of another unit, and takes no slot meanwhile; then it is sent.
+    void hold(UnitId unit);
+    void unhold(UnitId unit);
     void release(UnitId unit);
 
     std::vector<view::WorkUnit> waiting() const { return {waiting_.begin(), waiting_.end()}; }
     std::vector<view::WorkUnit> rendering() const { return rendering_; }
     bool is_waiting(UnitId unit) const;
     bool is_rendering(UnitId unit) const;
+    bool is_sending(UnitId unit) const { return sending_.contains(unit); }
 
     std::vector<UnitId> in_flight() const;  // ascending
-    bool empty() const { return waiting_.empty() && rendering_.empty() && sending_.empty(); }
+    bool empty() const { return waiting_.empty() && rendering_.empty() && held_.empty() && sending_.empty(); }
     std::uint32_t free_slots() const;
     std::uint64_t last_sequence() const { return last_sequence_; }
     void restart_sequence() { last_sequence_ = 0; }  // after every welcome
@@ -46,7 +50,7 @@ class WorkQueue {
     std::uint64_t last_sequence_ = 0;
     std::deque<view::WorkUnit> waiting_;
     std::vector<view::WorkUnit> rendering_;
-    std::set<UnitId> sending_;
+    std::set<UnitId> held_, sending_;
 };
 
 }  // namespace tessera::node

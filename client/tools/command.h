@@ -12,6 +12,7 @@ namespace tessera::tools {
 // Exit codes shared by all commands; see also mediator/program/command_line.h.
 inline constexpr int ExitComparison = 1;
 inline constexpr int ExitBadInput = 2;
+inline constexpr int ExitIncomplete = 3;  // written, but for tiles that no node could render
 inline constexpr int ExitInternal = 70;
 inline constexpr int ExitCannotWrite = 74;
 inline constexpr int ExitInterrupted = 130;

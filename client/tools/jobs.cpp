@@ -161,6 +161,8 @@ int fetch(const FetchOptions& options) {
                            display_name(enumerator_name(summary.outcome)).c_str(), summary.seconds_render)
               << "wrote " << output << std::endl;
     if (options.remove) session->cancel_job(job);
+    if (summary.outcome == session::Outcome::Incomplete)
+        return report_error(FetchName, ExitIncomplete, summary.message);
     return 0;
 }
 

@@ -12,6 +12,7 @@
 #include "mediator/frame/resolve.h"
 #include "mediator/picture/atomic_file.h"
 #include "mediator/picture/exposure.h"
+#include "mediator/picture/mark_tiles.h"
 #include "mediator/picture/picture_encoder.h"
 #include "mediator/program/command_line.h"
 
@@ -29,6 +30,8 @@ const char* name(session::Outcome outcome) {
             return "stopped";
         case session::Outcome::NoNodes:
             return "all nodes were gone";
+        case session::Outcome::Incomplete:
+            return "incomplete";
         case session::Outcome::Failed:
             break;
     }
@@ -47,6 +50,29 @@ const char* name(view::PixelFilterKind kind) {
     return "blackman-harris";
 }
 
+// "x y width height samples" of each, separated by commas.
+std::string failed_tiles_text(const std::vector<session::FailedTile>& tiles) {
+    std::string text;
+    for (const session::FailedTile& tile : tiles) {
+        const Rect& rect = tile.rect;
+        if (!text.empty()) text += ", ";
+        for (const std::int32_t value : {rect.x, rect.y, rect.width, rect.height})
+            text += std::to_string(value) + " ";
+        text += std::to_string(tile.samples);
+    }
+    return text;
+}
+
+void mark_failed_tiles(frame::Image& image, const session::ViewRequest& request,
+                       const session::ViewSummary& summary) {
+    std::vector<Rect> tiles;
+    for (const session::FailedTile& tile : summary.failed_tiles) {
+        if (tile.samples == 0) tiles.push_back(tile.rect);
+    }
+    picture::mark_tiles(image, tiles, request.display_transform.exposure.value_or(0.0), request.view.window.x,
+                        request.view.window.y);
+}
+
 std::string kinds_of(const client::ViewResult& result) {
     std::set<std::string> kinds;
     for (const session::NodeSummary& node : result.summary.nodes) kinds.insert(node.kind);
@@ -62,6 +88,8 @@ std::map<std::string, std::string> provenance(const session::ViewRequest& reques
         std::minmax_element(result.film()->counts.begin(), result.film()->counts.end());
     std::map<std::string, std::string> attributes = view_attributes(request.view);
     if (result.has_picture()) attributes["tessera.filter"] = result.summary.picture.filter;
+    if (!result.summary.failed_tiles.empty())
+        attributes["tessera.failedTiles"] = failed_tiles_text(result.summary.failed_tiles);
     attributes.insert({{"tessera.software", "tessera " + cli::version()},
                        {"tessera.scene", origin.scene},
                        {"tessera.camera", origin.camera},
@@ -171,8 +199,9 @@ void write_pictures(const std::vector<std::string>& paths, const session::ViewRe
                                      .attributes = provenance(request, result, origin)},
                                     filtered, statistics);
         } else {
-            write_picture(path, filtered ? *filtered : unfiltered(*result.film()), request.display_transform,
-                          custom);
+            frame::Image image = filtered ? *filtered : unfiltered(*result.film());
+            mark_failed_tiles(image, request, result.summary);
+            write_picture(path, image, request.display_transform, custom);
         }
     }
 }

@@ -192,6 +192,8 @@ class Render {
         if (result_.summary.outcome == Outcome::Stopped) return interrupted("nothing was counted");
         if (result_.summary.outcome == Outcome::NoNodes)
             return fail(cli::ExitUnavailable, result_.summary.message);
+        if (result_.summary.outcome == Outcome::Incomplete)
+            return fail(ExitIncomplete, result_.summary.message);
         if (result_.summary.outcome != Outcome::Complete || !result_.film())
             return fail(ExitInternal, "the frame failed: " + result_.summary.message);
         const SampleGrid grid = *plan_.coverage;
@@ -233,6 +235,8 @@ class Render {
             return interrupted("the samples merged so far were written");
         if (result_.summary.outcome == Outcome::NoNodes)
             return report_error(name_, cli::ExitUnavailable, result_.summary.message);
+        if (result_.summary.outcome == Outcome::Incomplete)
+            return report_error(name_, ExitIncomplete, result_.summary.message);
         return 0;
     }
 

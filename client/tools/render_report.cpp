@@ -39,6 +39,19 @@ Json nodes_value(const session::ViewSummary& result) {
     return nodes;
 }
 
+Json failed_tiles_value(const session::ViewSummary& result) {
+    Json tiles = Json::array();
+    for (const session::FailedTile& tile : result.failed_tiles) {
+        tiles.push_back({{"x", tile.rect.x},
+                         {"y", tile.rect.y},
+                         {"width", tile.rect.width},
+                         {"height", tile.rect.height},
+                         {"samples", tile.samples},
+                         {"message", tile.message}});
+    }
+    return tiles;
+}
+
 Json picture_value(const session::ViewSummary& result) {
     const session::PictureSummary& picture = result.picture;
     if (picture.encoding == session::PictureEncoding::None) return nullptr;
@@ -100,6 +113,7 @@ std::string as_json(const RenderReport& report) {
          {{"control", result.wire_bytes.control},
           {"blobs", result.wire_bytes.blobs},
           {"film", result.wire_bytes.film}}},
+        {"failed_tiles", failed_tiles_value(result)},
         {"picture", picture_value(result)},
         {"view_transform", std::string(enumerator_name(transform.view_transform))},
         {"exposure", transform.exposure ? Json(*transform.exposure) : Json()},

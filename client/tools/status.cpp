@@ -85,6 +85,8 @@ std::string as_json(const session::ClusterStatus& status) {
                          {"samples_per_second", node.samples_per_second},
                          {"round_trip_seconds", node.round_trip_seconds},
                          {"stuck", node.stuck},
+                         {"quarantine", node.quarantine.empty() ? Json() : Json(node.quarantine)},
+                         {"quarantine_seconds", node.quarantine_seconds},
                          {"clock_offset_seconds", node.clock_offset_seconds},
                          {"clock_bound_seconds", node.clock_bound_seconds}});
     }
@@ -111,6 +113,8 @@ std::string as_json(const session::ClusterStatus& status) {
           {"blobs", status.wire_bytes.blobs},
           {"film", status.wire_bytes.film}}},
         {"resyncs", status.resyncs},
+        {"contradictions", status.contradictions},
+        {"caught_exceptions", status.caught_exceptions},
         {"live", live_value(status.scene)},
         {"display", display_value(status.display)},
         {"nodes", nodes},
@@ -122,11 +126,20 @@ void print_table(const session::ClusterStatus& status) {
     std::printf("%s, up %.0f s, scene version %llu, %llu blobs (%.1f MiB)\n", status.software.c_str(),
                 status.uptime_seconds, static_cast<unsigned long long>(status.version.number),
                 static_cast<unsigned long long>(status.blobs), double(status.blob_bytes) / 1048576.0);
-    std::printf("%u sessions, %u waiting; units: %llu issued, %llu merged, %llu reissued, %llu lost\n",
-                status.sessions, status.queued, static_cast<unsigned long long>(status.units.issued),
-                static_cast<unsigned long long>(status.units.merged),
-                static_cast<unsigned long long>(status.units.reissued),
-                static_cast<unsigned long long>(status.units.lost));
+    const session::UnitCounts& units = status.units;
+    const auto count = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
+    std::printf(
+        "%u sessions, %u waiting; units: %llu issued, %llu reissued; of these %llu merged, %llu duplicate, "
+        "%llu cancelled, %llu refused, %llu lost\n",
+        status.sessions, status.queued, count(units.issued), count(units.reissued), count(units.merged),
+        count(units.duplicate), count(units.cancelled), count(units.refused), count(units.lost));
+    if (status.dropped_messages + status.contradictions + status.caught_exceptions > 0) {
+        std::printf(
+            "%llu messages dropped, %llu contradictions between nodes, %llu internal errors: see the "
+            "master's "
+            "log\n",
+            count(status.dropped_messages), count(status.contradictions), count(status.caught_exceptions));
+    }
     if (const session::SceneStatus& live = status.scene; !live.title.empty()) {
         std::printf("%s '%s': %u members, %u views, %llu edits, %llu transactions\n",
                     live.exclusive ? "exclusive scene" : "live scene", live.title.c_str(), live.members,
@@ -153,6 +166,9 @@ void print_table(const session::ClusterStatus& status) {
                     node.samples_per_second * 1e-6, node.round_trip_seconds * 1e3,
                     node.clock_offset_seconds * 1e3, node.clock_bound_seconds * 1e3,
                     node.stuck ? "  stuck" : "");
+        if (!node.quarantine.empty())
+            std::printf("  in quarantine for %.0f s: %s; tessera node release %s ends it\n",
+                        node.quarantine_seconds, node.quarantine.c_str(), node.summary.name.c_str());
     }
 }
 

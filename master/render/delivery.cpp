@@ -11,6 +11,15 @@ namespace tessera::master {
 namespace {
 constexpr std::uint32_t TilesAhead = 32;                   // encoded by the film store and not yet sent
 constexpr std::size_t BytesAhead = std::size_t{32} << 20;  // waiting for a slow client
+std::vector<Rect> tiles_without_samples(const ViewState& view) {
+    std::vector<Rect> tiles;
+    if (!view.is_last_pass()) return tiles;  // coarse pictures are replaced soon
+    for (const session::FailedTile& tile : view.failed_tiles) {
+        if (tile.samples == 0) tiles.push_back(tile.rect);
+    }
+    return tiles;
+}
+
 }  // namespace
 
 void Delivery::watch(SessionId session, std::uint64_t number, ViewId view, const FrameFormat& format) {
@@ -132,8 +141,10 @@ void Delivery::begin(const ViewState& view, const FrameFormat& format, std::vect
     const bool nothing_to_make = waited ? !has_picture(view, format.picture) : view.run.samples == 0;
     if (pending.is_end && nothing_to_make) return ship(frame, std::move(pending), {});
     const bool hash = pending.shown.complete && !waited;
-    film_.reconstruct(frame, pass.view, view.version, {format.picture, format.transform, view.id},
-                      hash ? FilmStore::FilmHash::Wanted : FilmStore::FilmHash::NotWanted);
+    film_.reconstruct(
+        frame, pass.view, view.version,
+        {format.picture, format.transform, view.id, tiles_without_samples(view), view.request.view.window},
+        hash ? FilmStore::FilmHash::Wanted : FilmStore::FilmHash::NotWanted);
     pending_.emplace(frame, std::move(pending));
 }
 

@@ -32,7 +32,7 @@ Scheduler& Dispatcher::begin(const view::View& view, const PlanSettings& plan,
     next_unit_ += UnitsPerPass;
     by_first_unit_[first] = view.id;
     const auto it = passes_.emplace(
-        view.id, Active{view, requirements, first,
+        view.id, Active{view, requirements, plan.hold_film, first,
                         Scheduler(plan, view.id, view.revision, requirements.version, first, deadline)});
     return it.first->second.scheduler;
 }
@@ -111,14 +111,20 @@ std::vector<NodeCapacity> Dispatcher::capacities() const {
 void Dispatcher::deal(ViewId id, std::vector<NodeCapacity>& capacities, TimePoint now) {
     Active* pass = active(id);
     if (pass == nullptr) return;
-    std::vector<NodeCapacity> suitable;
+    // A node that fails much gets no more until it is known whose fault that is, unless all do.
+    constexpr std::uint32_t MaxUnexplained = 3;
+    std::vector<NodeCapacity> suitable, suspect;
     for (const NodeCapacity& capacity : capacities) {
-        if (ready(*nodes_.find(capacity.node), pass->view, pass->requirements)) suitable.push_back(capacity);
+        if (!ready(*nodes_.find(capacity.node), pass->view, pass->requirements)) continue;
+        const bool fails = unexplained_failures(capacity.node) >= MaxUnexplained;
+        (fails ? suspect : suitable).push_back(capacity);
     }
+    if (suitable.empty()) suitable = std::move(suspect);
     if (suitable.empty()) return;
     for (const Assignment& assignment : pass->scheduler.assign(suitable, balancer_, now)) {
         NodeRecord& node = *nodes_.find(assignment.node);
-        if (auto opening = node.opening(pass->view)) outbox_.control(node.control, *std::move(opening));
+        if (auto opening = node.opening(pass->view, pass->hold_film))
+            outbox_.control(node.control, *std::move(opening));
         node.pending[assignment.unit.id] = ++node.work_sequence;
         outbox_.control(node.control, wire::Work{node.work_sequence, assignment.unit});
         for (NodeCapacity& capacity : capacities) {
@@ -136,6 +142,8 @@ Dispatcher::Prospects Dispatcher::prospects(const view::View& view,
         if (!suits(node, view, requirements)) continue;
         ++prospects.suitable;
         prospects.workers += std::max(1u, node.hello.concurrent_units);
+        prospects.building += node.state.phase == session::NodePhase::Building ? 1 : 0;
+        prospects.scene_bytes += node.state.scene_bytes;
         const double rate = balancer_.rate(id);
         double& slowest = prospects.slowest_worker;
         if (rate > 0.0) slowest = slowest > 0.0 ? std::min(slowest, rate) : rate;
@@ -175,98 +183,48 @@ void Dispatcher::confirm_cancelled(UnitId unit, TimePoint now) {
 // ---- events ----
 
 void Dispatcher::collect_overdue(TimePoint now) {
-    if (passes_.empty()) return;
     for (auto& [id, node] : nodes_.all()) {
+        if (node.quarantined && quarantine_.find(node.identity(), now) == nullptr) {
+            node.quarantined = false;
+            events_({wire::Severity::Info, "node " + node.hello.name + " leaves quarantine"});
+        }
+        if (passes_.empty()) continue;
         std::vector<UnitId> held;
         for (const auto& [view, pass] : passes_) {
             const auto units = pass.scheduler.held_by(id);
             held.insert(held.end(), units.begin(), units.end());
         }
         for (const UnitId unit : NodeTable::overdue(node, held, now, overdue_patience_)) {
-            if (Active* pass = holder(unit)) pass->scheduler.released(unit, id, Scheduler::Loss::Lost);
+            if (Active* pass = holder(unit)) pass->scheduler.end(unit, id, Fate::Lost);
         }
         if (!node.stuck) continue;
-        for (auto& [view, pass] : passes_) pass.scheduler.node_gone(id);
+        for (auto& [view, pass] : passes_) pass.scheduler.node_gone(id, node.capacity().workers);
     }
 }
 
-Dispatcher::Taken Dispatcher::take(const MergeReport& report, TimePoint now) {
-    const NodeRecord* node = nodes_.by_bulk(report.peer);
-    if (report.part + 1 == report.parts) confirm_cancelled(report.unit, now);  // it was finished already
-    if (report.malformed) {
-        ++malformed_film_;
-        events_({wire::Severity::Warning, "malformed film was dropped"});
-        return Taken::Dropped;
-    }
-    Active* pass = report.stale ? nullptr : active(report.view);
-    if (pass == nullptr || pass->view.revision != report.revision) return Taken::Dropped;
-    Scheduler& scheduler = pass->scheduler;
-    Taken taken = Taken::Known;
-    switch (report.result.outcome) {
-        case FrameAssembler::Outcome::Misfit:
-            scheduler.count_refused();
-            events_({wire::Severity::Error, "film that does not match the frame was rejected" +
-                                                (node ? " (node " + node->hello.name + ")" : std::string())});
-            return Taken::Dropped;
-        case FrameAssembler::Outcome::Conflict:
-            report_contradiction(*pass, report, node);
-            scheduler.count_duplicate();
-            break;
-        case FrameAssembler::Outcome::Duplicate:
-            scheduler.count_duplicate();
-            break;
-        case FrameAssembler::Outcome::Merged:
-            taken = Taken::New;
-            break;
-    }
-    if (node && report.parts == 1) balancer_.measured(node->id, report.pixel_samples, report.busy);
-    send_cancellations(scheduler.merged(report.unit, report.result.tile, report.block));
-    return taken;
-}
-
-std::optional<session::NodeSummary> Dispatcher::sender(const MergeReport& report) const {
-    const NodeRecord* node = nodes_.by_bulk(report.peer);
-    if (node == nullptr) return std::nullopt;
-    return session::NodeSummary{.id = node->id,
-                                .name = node->hello.name,
-                                .host = node->hello.host,
-                                .backend = node->hello.backend,
-                                .kind = node->hello.kind,
-                                .pid = node->hello.pid};
-}
-
-void Dispatcher::report_contradiction(const Active& pass, const MergeReport& report, const NodeRecord* node) {
-    const Rect& tile = pass.scheduler.tiles().at(report.result.tile);
-    events_({wire::Severity::Error,
-             "two nodes gave different bits for samples " + std::to_string(report.block.first) + ".." +
-                 std::to_string(report.block.end()) + (node ? " (second: " + node->hello.name + ")" : "") +
-                 "; replay: tessera probe SCENE --pixel " + std::to_string(tile.x) + "," +
-                 std::to_string(tile.y) + " --sample " + std::to_string(report.block.first)});
-}
-
-std::optional<Dispatcher::Failure> Dispatcher::released(NodeRecord& node, const wire::UnitReleased& release,
-                                                        TimePoint now) {
+void Dispatcher::released(NodeRecord& node, const wire::UnitReleased& release, TimePoint now) {
     node.pending.erase(release.unit);
     confirm_cancelled(release.unit, now);
     Active* pass = holder(release.unit);
-    if (pass == nullptr) return std::nullopt;
-    pass->scheduler.released(release.unit, node.id, Scheduler::Loss::Released);
+    if (pass == nullptr) return;
     switch (release.reason) {
         case wire::ReleaseReason::Cancelled:
         case wire::ReleaseReason::Leaving:
-            return std::nullopt;
+            pass->scheduler.end(release.unit, node.id, Fate::Cancelled);
+            return;
         case wire::ReleaseReason::UnknownView:
             node.views.erase(pass->view.id);  // the message was lost: send it again
             [[fallthrough]];
         case wire::ReleaseReason::OtherVersion:
-            pass->scheduler.count_refused();
-            return std::nullopt;
+            pass->scheduler.end(release.unit, node.id, Fate::Refused);
+            return;
         case wire::ReleaseReason::Failed:
             break;
     }
-    pass->scheduler.count_refused();
+    if (!pass->scheduler.failed(release.unit, node.id, UnitTrouble::Kind::Failed, release.message))
+        return;  // of a unit that it does not hold: it says nothing
     events_({wire::Severity::Error, "node " + node.hello.name + ": " + release.message});
-    return Failure{pass->view.id, release.message};
+    take_explained(pass->scheduler, now);
 }
 
 // Its film may still be in flight on the bulk link; the overdue check catches it if it never arrives.
@@ -275,15 +233,21 @@ void Dispatcher::goodbye(NodeRecord& node, const wire::Goodbye& goodbye) {
         for (const UnitId unit : pass.scheduler.held_by(node.id)) {
             const auto& sent = goodbye.units_sent;
             if (std::find(sent.begin(), sent.end(), unit) != sent.end()) continue;
-            pass.scheduler.released(unit, node.id, Scheduler::Loss::Released);
+            pass.scheduler.end(unit, node.id, Fate::Cancelled);
         }
     }
 }
 
-void Dispatcher::node_gone(NodeId node) {
-    balancer_.forget(node);
+void Dispatcher::node_gone(NodeId id, Departure departure, TimePoint now) {
+    balancer_.forget(id);
     cancelled_.clear();  // some will never be confirmed
-    for (auto& [view, pass] : passes_) pass.scheduler.node_gone(node);
+    const NodeRecord* node = nodes_.find(id);
+    const std::uint32_t rendering =
+        departure == Departure::Sudden && node != nullptr ? node->capacity().workers : 0;
+    for (auto& [view, pass] : passes_) {
+        pass.scheduler.node_gone(id, rendering);
+        take_explained(pass.scheduler, now);
+    }
 }
 
 session::UnitCounts Dispatcher::counts() const {

@@ -12,6 +12,7 @@
 #include "master/render/percentiles.h"
 #include "master/render/render_outputs.h"
 #include "master/render/schedule/scheduler.h"
+#include "mediator/wire/envelope.h"
 
 namespace tessera::master {
 
@@ -52,29 +53,42 @@ class Dispatcher {
         std::uint32_t workers = 0;        // of suitable nodes
         double samples_per_second = 0.0;  // of ready nodes; 0 = not measured
         double slowest_worker = 0.0;      // samples per second, of suitable nodes that were measured
+        std::uint32_t building = 0;       // suitable nodes that build the scene
+        std::uint64_t scene_bytes = 0;    // that suitable nodes have received; grows while they sync
     };
     Prospects prospects(const view::View& view, const NodeRequirements& requirements) const;
     std::string obstacles(const view::View& view, Version version) const;
     std::size_t node_count() const { return nodes_.all().size(); }
     double rate(NodeId node) const { return balancer_.rate(node); }  // pixel samples a second of one worker
 
-    // ---- events ----
-    void collect_overdue(TimePoint now);
+    // ---- film: admit(), then the film store merges it and reports to take() ----
+    // Whether the node holds or held units that cover it. Nothing: it is dropped; a node that invents film has a fault.
+    std::optional<Admission> admit(NodeRecord& node, const wire::FilmHead& head, std::size_t bytes,
+                                   TimePoint now);
+    // Dropped before it was looked at.
+    void malformed_film(NodeRecord& node, const std::string& problem, std::size_t bytes, TimePoint now);
     enum class Taken { Dropped, Known, New };  // New: samples that were not merged before
     Taken take(const MergeReport& report, TimePoint now);
     // The node that sent it, without its work counts; nothing when it has disconnected.
     std::optional<session::NodeSummary> sender(const MergeReport& report) const;
-    struct Failure {
-        ViewId pass;
-        std::string message;
-    };
-    std::optional<Failure> released(NodeRecord& node, const wire::UnitReleased& release, TimePoint now);
+
+    // ---- events ----
+    void collect_overdue(TimePoint now);  // and ends quarantines
+    void released(NodeRecord& node, const wire::UnitReleased& release, TimePoint now);
     void goodbye(NodeRecord& node, const wire::Goodbye& goodbye);
-    void node_gone(NodeId node);
+    enum class Departure { Expected, Sudden };  // sudden: something that it rendered may be the reason
+    void node_gone(NodeId node, Departure departure, TimePoint now);
+    void send_film_taken();  // to nodes whose film was taken since the last call
+
+    // ---- nodes in quarantine ----
+    void joined(NodeRecord& node, TimePoint now);
+    bool release_from_quarantine(const std::string& name, TimePoint now);
+    const Quarantine& quarantine() const { return quarantine_; }
 
     // ---- counts ----
-    session::UnitCounts counts() const;  // of all passes, including current ones
-    std::uint64_t malformed_film() const { return malformed_film_; }
+    session::UnitCounts counts() const;                           // of all passes, including current ones
+    std::uint64_t refused_film() const { return refused_film_; }  // malformed, or not asked for
+    std::uint64_t contradictions() const { return contradictions_; }
     // From the cancellation to the node's confirmation.
     const Percentiles& cancellations() const { return cancellations_; }
 
@@ -82,8 +96,10 @@ class Dispatcher {
     struct Active {
         view::View view;
         NodeRequirements requirements;
+        Duration hold_film{};
         UnitId first_unit;  // its units have UnitsPerPass ids from this one on
         Scheduler scheduler;
+        std::set<std::string> kinds{};  // of nodes whose film is in it
     };
     Active* active(ViewId pass);
     Active* holder(UnitId unit);
@@ -91,7 +107,12 @@ class Dispatcher {
     bool ready(const NodeRecord& node, const view::View& view, const NodeRequirements& requirements) const;
     void send_cancellations(const std::vector<Cancellation>& cancellations);
     void confirm_cancelled(UnitId unit, TimePoint now);
-    void report_contradiction(const Active& pass, const MergeReport& report, const NodeRecord* node);
+    std::uint32_t unexplained_failures(NodeId node) const;
+    void fault(NodeRecord& node, const std::string& reason, TimePoint now);
+    void take_explained(Scheduler& scheduler, TimePoint now);
+    void take_units_back(const NodeRecord& node, Fate fate);
+    void film_is_taken(NodeId node, std::uint64_t bytes);
+    void report_contradiction(const Active& pass, const MergeReport& report, const NodeRecord& node);
 
     Duration overdue_patience_;
     const Clock& clock_;
@@ -103,7 +124,8 @@ class Dispatcher {
     std::map<UnitId, ViewId> by_first_unit_;
     std::uint64_t next_unit_ = 1;
     session::UnitCounts counts_;  // of passes that have ended
-    std::uint64_t malformed_film_ = 0;
+    Quarantine quarantine_;
+    std::uint64_t refused_film_ = 0, contradictions_ = 0;
     std::map<UnitId, TimePoint> cancelled_;  // not confirmed yet
     Percentiles cancellations_;
 };

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <functional>
 
-#include "mediator/wire/envelope.h"
-
 namespace tessera::master {
 
 FilmStore::FilmStore(RenderOutputs& outputs)
@@ -28,9 +26,10 @@ void FilmStore::retain_as_features(ViewId view, ViewId of_picture) {
     enqueue(RetainAsFeatures{view, of_picture}, 0);
 }
 
-void FilmStore::push(net::PeerId peer, net::Bytes film_message) {
+void FilmStore::push(NodeId node, const wire::FilmHead& head, Admission&& admission,
+                     net::Bytes film_message) {
     const std::size_t bytes = film_message.size();
-    enqueue(Film{peer, std::move(film_message)}, bytes);
+    enqueue(Film{node, head, std::move(admission), std::move(film_message)}, bytes);
 }
 
 void FilmStore::deliver(ViewId view, std::uint64_t frame, std::uint32_t first, std::uint32_t last) {
@@ -71,7 +70,11 @@ void FilmStore::run(std::stop_token stop) {
         Task task = std::move(tasks_.front());
         tasks_.pop_front();
         lock.unlock();
-        std::visit([this](auto& chosen) { perform(chosen); }, task);
+        try {
+            std::visit([this](auto& chosen) { perform(chosen); }, task);
+        } catch (const std::exception& error) {
+            outputs_.put(TaskFailure{std::string("film was lost: ") + error.what()});
+        }
         if (const auto* film = std::get_if<Film>(&task)) {
             const std::scoped_lock done(mutex_);
             queued_bytes_ -= film->bytes.size();
@@ -110,27 +113,29 @@ void FilmStore::perform(AddChannels& task) {
 }
 
 void FilmStore::perform(Film& task) {
-    MergeReport report{.peer = task.peer};
+    MergeReport report{.node = task.node,
+                       .unit = task.head.unit,
+                       .view = task.head.view,
+                       .revision = task.head.revision,
+                       .bytes = task.bytes.size(),
+                       .tile = task.admission.tile,
+                       .block = task.head.block,
+                       .problem = {}};
     auto message = wire::decode_bulk(task.bytes);
     auto* part = message ? std::get_if<wire::FilmPart>(&*message) : nullptr;
     if (part == nullptr) {
-        report.malformed = true;
-        outputs_.put(std::move(report));
-        return;
+        report.problem = message ? "not film" : message.error().what();
+        return outputs_.put(std::move(report));
     }
-    report.unit = part->unit;
-    report.view = part->view;
-    report.revision = part->revision;
-    report.part = part->part;
-    report.parts = part->parts;
-    report.block = part->film.block;
     report.pixel_samples = part->film.block.count() * part->film.pixel_count();
     report.nonfinite = part->film.nonfinite_samples;
+    report.units = part->units;
     report.rays = part->rays;
     report.busy = std::chrono::nanoseconds(part->busy_ns);
     OpenFilm* opened = film(part->view);
     report.stale = opened == nullptr || part->revision != opened->revision;
-    if (!report.stale) report.result = opened->assembler->insert(std::move(part->film));
+    if (!report.stale)
+        report.result = opened->assembler->insert(std::move(part->film), task.admission.replaceable);
     outputs_.put(std::move(report));
 }
 

@@ -12,7 +12,9 @@
 #include "master/render/frame_assembler.h"
 #include "master/render/picture_worker.h"
 #include "master/render/render_outputs.h"
+#include "master/render/schedule/unit_ledger.h"
 #include "mediator/net/channel.h"
+#include "mediator/wire/envelope.h"
 
 namespace tessera::master {
 
@@ -30,7 +32,8 @@ class FilmStore {
     void add_channels(ViewId view, std::uint64_t revision, frame::ChannelSet channels);
     // Closes the film and retains it as full-size features for upsampling another film's picture.
     void retain_as_features(ViewId view, ViewId of_picture);
-    void push(net::PeerId peer, net::Bytes film_message);
+    // Film that was admitted (dispatcher.h).
+    void push(NodeId node, const wire::FilmHead& head, Admission&& admission, net::Bytes film_message);
     // Tiles [first, last) as messages for a client.
     void deliver(ViewId view, std::uint64_t frame, std::uint32_t first, std::uint32_t last);
     void copy(ViewId view);  // results in FilmBlocks, or in nothing when there is no such film
@@ -67,7 +70,9 @@ class FilmStore {
         frame::ChannelSet channels;
     };
     struct Film {
-        net::PeerId peer;
+        NodeId node;
+        wire::FilmHead head;
+        Admission admission;
         net::Bytes bytes;
     };
     struct Deliver {

@@ -9,14 +9,15 @@ FrameAssembler::FrameAssembler(std::vector<Rect> tiles, frame::ChannelSet channe
     for (std::uint32_t i = 0; i < tiles_.size(); ++i) by_corner_[{tiles_[i].x, tiles_[i].y}] = i;
 }
 
-FrameAssembler::Result FrameAssembler::insert(frame::FilmTile block) {
+FrameAssembler::Result FrameAssembler::insert(frame::FilmTile block, const BlockSet& replaceable) {
     const auto it = by_corner_.find({block.rect.x, block.rect.y});
     if (it == by_corner_.end() || tiles_[it->second] != block.rect || block.channels != channels_ ||
         !block.block.is_aligned() || block.block.end() > spp_) {
         return {};
     }
     const std::uint32_t tile = it->second;
-    switch (forests_[tile].insert(std::move(block))) {
+    const auto may_replace = [&](const frame::SampleBlock& inside) { return replaceable.covers(inside); };
+    switch (forests_[tile].insert(std::move(block), may_replace)) {
         case frame::BlockForest::Outcome::Merged:
         case frame::BlockForest::Outcome::Replaced:
             return {Outcome::Merged, tile};
@@ -24,6 +25,8 @@ FrameAssembler::Result FrameAssembler::insert(frame::FilmTile block) {
             return {Outcome::Duplicate, tile};
         case frame::BlockForest::Outcome::Conflict:
             return {Outcome::Conflict, tile};
+        case frame::BlockForest::Outcome::Overlap:
+            return {Outcome::Overlap, tile};
     }
     return {};
 }

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "master/render/schedule/block_set.h"
 #include "mediator/frame/block_forest.h"
 
 namespace tessera::master {
@@ -15,12 +16,14 @@ class FrameAssembler {
   public:
     FrameAssembler(std::vector<Rect> tiles, frame::ChannelSet channels, std::uint64_t spp);
 
-    enum class Outcome { Merged, Duplicate, Conflict, Misfit };
+    // Overlap: contains film of other units, see UnitLedger::admit().
+    enum class Outcome { Merged, Duplicate, Conflict, Overlap, Misfit };
     struct Result {
         Outcome outcome = Outcome::Misfit;
         std::uint32_t tile = 0;
     };
-    Result insert(frame::FilmTile block);
+    // It may replace blocks that `replaceable` covers.
+    Result insert(frame::FilmTile block, const BlockSet& replaceable);
 
     std::uint32_t tile_count() const { return static_cast<std::uint32_t>(tiles_.size()); }
     // Film inserted from now on has these channels, too. Existing film stays, without them.

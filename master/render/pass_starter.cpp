@@ -9,9 +9,8 @@ void PassStarter::begin(Pass& pass, const PlanSettings& plan, const NodeRequirem
     FrameAssembler assembler(scheduler.tiles(), pass.view.channels, plan.spp);
     for (frame::FilmTile& block : blocks) {
         const frame::SampleBlock samples = block.block;
-        const FrameAssembler::Result result = assembler.insert(std::move(block));
-        if (result.outcome == FrameAssembler::Outcome::Merged)
-            (void)scheduler.merged(UnitId{}, result.tile, samples);
+        const FrameAssembler::Result result = assembler.insert(std::move(block), {});
+        if (result.outcome == FrameAssembler::Outcome::Merged) scheduler.restored(result.tile, samples);
     }
     film.open(pass.view.id, pass.view.revision, std::move(assembler));
 }

@@ -7,19 +7,27 @@
 namespace tessera::master {
 
 void PictureWorker::make(PictureTask task) {
-    thread_.post(
-        [this, task = std::make_shared<PictureTask>(std::move(task))] { outputs_.put(reconstruct(*task)); });
-}
-
-void PictureWorker::make(OutputRequest request, std::vector<frame::FilmTile> films) {
-    thread_.post([this, request = std::move(request),
-                  films = std::make_shared<std::vector<frame::FilmTile>>(std::move(films))] {
-        outputs_.put(reconstruct_output(request, *films, reconstructor_));
+    thread_.post([this, task = std::make_shared<PictureTask>(std::move(task))] {
+        Reconstructed result{.frame = task->frame, .picture = {}};
+        try {
+            result = reconstruct(*task);
+        } catch (const std::exception& error) {
+            result.picture.error = std::string("the picture failed: ") + error.what();
+        }
+        outputs_.put(std::move(result));
     });
 }
 
+void PictureWorker::make(OutputRequest request, std::vector<frame::FilmTile> films) {
+    post("the picture of an output",
+         [this, request = std::move(request),
+          films = std::make_shared<std::vector<frame::FilmTile>>(std::move(films))] {
+             outputs_.put(reconstruct_output(request, *films, reconstructor_));
+         });
+}
+
 void PictureWorker::calibrate(const view::View& view, session::PictureEncoding encoding) {
-    thread_.post([this, view, encoding] {
+    post("timing a filter", [this, view, encoding] {
         constexpr std::uint32_t Edge = 256;
         const auto width = std::min(static_cast<std::uint32_t>(view.window.width), Edge);
         const auto height = std::min(static_cast<std::uint32_t>(view.window.height), Edge);
@@ -30,6 +38,16 @@ void PictureWorker::calibrate(const view::View& view, session::PictureEncoding e
 
 void PictureWorker::forget(ViewId first, ViewId last) {
     thread_.post([this, first, last] { reconstructor_.forget(first, last); });
+}
+
+void PictureWorker::post(const char* what, std::function<void()> task) {
+    thread_.post([this, what, task = std::move(task)] {
+        try {
+            task();
+        } catch (const std::exception& error) {
+            outputs_.put(TaskFailure{std::string(what) + " failed: " + error.what()});
+        }
+    });
 }
 
 Reconstructed PictureWorker::reconstruct(const PictureTask& task) {

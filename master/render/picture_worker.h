@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -34,6 +35,7 @@ class PictureWorker {
 
   private:
     Reconstructed reconstruct(const PictureTask& task);
+    void post(const char* what, std::function<void()> task);
 
     RenderOutputs& outputs_;
     Reconstructor reconstructor_;  // only used by the thread

@@ -7,6 +7,7 @@
 #include "master/filter/catalog.h"
 #include "master/filter/upsample.h"
 #include "mediator/picture/exposure.h"
+#include "mediator/picture/mark_tiles.h"
 #include "mediator/picture/picture_encoder.h"
 
 namespace tessera::master {
@@ -70,7 +71,7 @@ std::vector<std::byte> Reconstructor::encode(const filter::Planes& picture, cons
         const auto bytes = std::as_bytes(picture.values());
         return {bytes.begin(), bytes.end()};
     }
-    const frame::Image image = interleaved(picture);
+    frame::Image image = interleaved(picture);
     if (*file != picture::FileFormat::Exr) {
         view::DisplayTransform& transform = summary.display_transform;
         transform = format.transform;
@@ -80,6 +81,10 @@ std::vector<std::byte> Reconstructor::encode(const filter::Planes& picture, cons
             transform.exposure = picture::measured_exposure(image);
             if (transform.exposure) exposures_[format.view] = *transform.exposure;
         }
+    }
+    if (*file != picture::FileFormat::Exr) {
+        picture::mark_tiles(image, format.failed_tiles, summary.display_transform.exposure.value_or(0.0),
+                            format.window.x, format.window.y);
     }
     return picture::encode_picture(image, *file, summary.display_transform);
 }

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "mediator/filter/choice.h"
 #include "mediator/frame/film_tile.h"
@@ -29,7 +30,9 @@ struct Films {
 struct PictureFormat {
     session::PictureEncoding encoding = session::PictureEncoding::None;
     view::DisplayTransform transform;
-    ViewId view;  // all of its pictures use the exposure measured in the first
+    ViewId view;                     // all of its pictures use the exposure measured in the first
+    std::vector<Rect> failed_tiles;  // to be marked in a PNG or JPEG
+    Rect window;                     // of the picture, which they are relative to
 };
 
 // Filters whole films and encodes them. Every view has its own filter instance, which keeps its history from one

@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -16,17 +17,19 @@ namespace tessera::master {
 
 // The result of merging one film message.
 struct MergeReport {
-    net::PeerId peer = 0;  // bulk peer that sent it
+    NodeId node;  // that sent it
     UnitId unit;
     ViewId view;
     std::uint64_t revision = 0;
-    std::uint16_t part = 0, parts = 1;
+    std::uint64_t bytes = 0;  // of the message
+    std::uint32_t tile = 0;   // index in its pass
     frame::SampleBlock block;
+    std::uint32_t units = 0;  // complete with it
     std::uint64_t pixel_samples = 0, nonfinite = 0, rays = 0;
     Duration busy{};
     FrameAssembler::Result result;
-    bool stale = false;      // of a view or revision that is not being assembled
-    bool malformed = false;  // not decodable; all other members are meaningless
+    bool stale = false;   // of a view or revision that is not being assembled
+    std::string problem;  // not empty: its content is damaged or impossible
 };
 // One merged tile of a frame, encoded for a client.
 struct EncodedTile {
@@ -52,8 +55,12 @@ struct CalibrationResult {
     std::uint64_t pixels = 0;
     double seconds = 0.0;
 };
-using RenderOutput =
-    std::variant<MergeReport, EncodedTile, FilmBlocks, Reconstructed, CalibrationResult, OutputResult>;
+// A task of a rendering thread failed for a reason that is not in its input: most likely there was no memory for it.
+struct TaskFailure {
+    std::string text;
+};
+using RenderOutput = std::variant<MergeReport, EncodedTile, FilmBlocks, Reconstructed, CalibrationResult,
+                                  OutputResult, TaskFailure>;
 
 // Results of the threads that merge film and reconstruct pictures, for the event loop that owns the channel: each
 // result wakes it. Thread-safe.

@@ -16,6 +16,7 @@ void ViewRunner::restart(ViewState& view, TimePoint now) {
     ++view.revision;
     view.camera_revision = view.asked_revision;
     view.restart_wanted = false;
+    view.failed_tiles.clear();
     view.run = {.started = now,
                 .without_nodes_since = now,
                 .cost_key = cost_key(view.request),
@@ -45,20 +46,22 @@ void ViewRunner::wait_for_nodes(ViewState& view, TimePoint now) {
         if (budget_is_planned(view, now)) begin_rendering(view, now);
         return;
     }
-    if (prospects.suitable >= view.request.min_nodes) {
-        run.phase = Phase::Syncing;
+    const bool enough = prospects.suitable >= view.request.min_nodes;
+    run.phase = enough ? Phase::Syncing : Phase::WaitingForNodes;
+    // Syncing takes as long as it takes, while there is progress.
+    if (enough && (prospects.building > 0 || prospects.scene_bytes != run.synced_bytes))
         run.without_nodes_since = now;
-        return;
-    }
-    run.phase = Phase::WaitingForNodes;
+    run.synced_bytes = prospects.scene_bytes;
     if (view.request.wait_limit == Duration::zero() ||
         now - run.without_nodes_since < view.request.wait_limit)
         return;
-    decide(view, Outcome::NoNodes,
-           passes_.dispatcher.obstacles(view.request.view, view.version) +
-               std::to_string(prospects.suitable) + " of " + std::to_string(view.request.min_nodes) +
-               " nodes are ready: start more nodes or ask for fewer with --wait-nodes",
-           now);
+    decide(
+        view, Outcome::NoNodes,
+        passes_.dispatcher.obstacles(view.request.view, view.version) + std::to_string(prospects.ready) +
+            " of " + std::to_string(view.request.min_nodes) +
+            (enough ? " nodes are ready, and the others do not receive the scene: see the log of their master"
+                    : " nodes are ready: start more nodes or ask for fewer with --wait-nodes"),
+        now);
 }
 
 // True when the time of filter and encoding is known; otherwise requests a calibration.
@@ -128,11 +131,23 @@ PlanSettings ViewRunner::plan_of(const ViewState& view) const {
     // with a budget the filter needs a variance, which takes 2.
     if (pass.kind == Pass::Kind::Picture && !view.shows_all())
         plan.first_level = !view.run.deadline ? 2u : view.request.stop.has_budget() ? 1u : 0u;
+    // No picture is shown before the end.
+    if (!view.shows_all() && !view.run.deadline) plan.hold_film = std::chrono::seconds(2);
     return plan;
 }
 
 void ViewRunner::begin_pass(ViewState& view, std::vector<frame::FilmTile>&& blocks) {
     passes_.begin(view.pass(), plan_of(view), requirements(view), view.run.deadline, std::move(blocks));
+    // What failed in a coarse pass would fail again, and cost more nodes.
+    Scheduler& scheduler = *passes_.dispatcher.find(view.pass().view.id);
+    for (std::uint32_t tile = 0; tile < scheduler.tiles().size(); ++tile) {
+        const Rect rect = in_full_size(view, view.pass(), scheduler.tiles()[tile]);
+        for (const session::FailedTile& failed : view.failed_tiles) {
+            if (intersection(rect, failed.rect).empty()) continue;
+            scheduler.give_up({tile, {}, failed.message});
+            break;
+        }
+    }
 }
 
 // ---- from pass to pass ----
@@ -145,6 +160,7 @@ void ViewRunner::advance(ViewState& view, TimePoint now) {
         return;
     }
     observe(view, now);
+    if (fails_everywhere(view)) return give_up(view, now);
     if (run.outcome || view.is_last_pass()) {
         advance_picture(view, now);
     } else {
@@ -167,6 +183,7 @@ void ViewRunner::advance_to_next_pass(ViewState& view, TimePoint now) {
     const Scheduler& scheduler = *passes_.dispatcher.find(pass.view.id);
     const bool is_over = scheduler.complete() || (pass.deadline && now >= *pass.deadline);
     if (!is_over) return;
+    collect_failed_tiles(view);
     if (pass.kind == Pass::Kind::Coarse) {
         show(view, now);
         if (views_.passes_paused || view.restart_wanted) return;
@@ -187,7 +204,10 @@ void ViewRunner::advance_picture(ViewState& view, TimePoint now) {
         const auto prospects = passes_.dispatcher.prospects(view.pass().view, requirements(view));
         if (prospects.ready > 0) run.without_nodes_since = now;
         if (scheduler.complete()) {
-            decide(view, Outcome::Complete, {}, now);
+            collect_failed_tiles(view);
+            const bool is_whole_picture = view.failed_tiles.empty();
+            decide(view, is_whole_picture ? Outcome::Complete : Outcome::Incomplete,
+                   is_whole_picture ? "" : failed_tiles_text(view), now);
         } else if (stop.time_is_up(run.deadline, is_whole, now)) {
             decide(view, Outcome::TimeUp, {}, now);
         } else if (view.request.wait_limit > Duration::zero() &&
@@ -208,15 +228,15 @@ void ViewRunner::took(ViewState& view, const MergeReport& report, Dispatcher::Ta
 
 void ViewRunner::account(ViewState& view, const MergeReport& report, Dispatcher::Taken taken) {
     if (taken != Dispatcher::Taken::New) return;
-    view.run.rays += report.part == 0 ? report.rays : 0;
+    view.run.rays += report.rays;
     view.run.nonfinite_samples += report.nonfinite;
     if (const auto node = passes_.dispatcher.sender(report)) {
         session::NodeSummary& part = view.run.nodes[node->id];
         const session::NodeSummary before = part;
         part = *node;
-        part.units = before.units + (report.part == 0 ? 1 : 0);
+        part.units = before.units + report.units;
         part.samples = before.samples + report.pixel_samples;
-        part.seconds_busy = before.seconds_busy + (report.part == 0 ? seconds(report.busy) : 0.0);
+        part.seconds_busy = before.seconds_busy + seconds(report.busy);
     }
 }
 
@@ -285,10 +305,38 @@ void ViewRunner::take(const CalibrationResult& calibration) {
         time_budget_.measured(view->run.cost_key, calibration.pixels, calibration.seconds);
 }
 
-void ViewRunner::unit_failed(ViewState& view, const std::string& problem, TimePoint now) {
-    if (++view.failures < settings_.failure_limit) return;
-    if (!view.shows_all()) return decide(view, Outcome::Failed, problem, now);
+// ---- tiles that no node can render ----
+
+void ViewRunner::collect_failed_tiles(ViewState& view) {
+    const Scheduler& scheduler = *passes_.dispatcher.find(view.pass().view.id);
+    for (const TileFailure& failure : scheduler.failed_tiles()) {
+        const session::FailedTile tile{
+            .rect = in_full_size(view, view.pass(), scheduler.tiles()[failure.tile]),
+            .samples = scheduler.ledger().samples(failure.tile).sample_count(),
+            .message = failure.message};
+        // The parts of a tile that failed in a coarser pass are smaller.
+        const bool is_known = std::any_of(view.failed_tiles.begin(), view.failed_tiles.end(),
+                                          [&](const session::FailedTile& known) {
+                                              return intersection(known.rect, tile.rect) == tile.rect;
+                                          });
+        if (!is_known) view.failed_tiles.push_back(tile);
+    }
+}
+
+bool ViewRunner::fails_everywhere(const ViewState& view) const {
+    const Scheduler& scheduler = *passes_.dispatcher.find(view.pass().view.id);
+    const std::size_t limit = std::min<std::size_t>(settings_.failure_limit, scheduler.tiles().size());
+    return !view.run.outcome && scheduler.merged_samples() == 0 && scheduler.failed_tiles().size() >= limit;
+}
+
+void ViewRunner::give_up(ViewState& view, TimePoint now) {
+    fail(view, passes_.dispatcher.find(view.pass().view.id)->failed_tiles().front().message, now);
+}
+
+void ViewRunner::fail(ViewState& view, const std::string& problem, TimePoint now) {
+    if (!view.shows_all() && !view.run.outcome) return decide(view, Outcome::Failed, problem, now);
     view.problem = problem;
+    view.restart_wanted = false;
     const std::string text = "view " + view.name + " is not rendered: " + problem;
     events_({wire::Severity::Error, text});
     notify_owner(view, text);

@@ -17,7 +17,8 @@ struct ViewSettings {
     Duration frame_interval = std::chrono::milliseconds(33);  // between pictures of the same pass
     Duration progress_interval = std::chrono::milliseconds(100);
     Duration stop_grace = std::chrono::seconds(2);  // for film of cancelled units
-    std::uint32_t failure_limit = 8;
+    std::uint32_t failure_limit =
+        8;  // tiles that fail before any other has samples: the view cannot be rendered
     Duration patience_without_nodes =
         std::chrono::seconds(3);  // before its owner is notified that a view waits
     std::size_t max_views = 60;   // of all members: a node keeps 256, and each view has several passes
@@ -49,10 +50,11 @@ class ViewRunner {
     // Called when time has passed or samples have arrived.
     void advance(ViewState& view, TimePoint now);
     void took(ViewState& view, const MergeReport& report, Dispatcher::Taken taken, TimePoint now);
-    void unit_failed(ViewState& view, const std::string& problem, TimePoint now);
     // Continues the film with another filter; not for a change that restarts.
     void change_filter(ViewState& view, const FilterChange& change, TimePoint now);
     void decide(ViewState& view, session::Outcome outcome, std::string message, TimePoint now);
+    // It is not rendered any more, until its scene or request changes.
+    void fail(ViewState& view, const std::string& problem, TimePoint now);
 
     void take(Reconstructed&& made, TimePoint now);
     void take(const CalibrationResult& calibration);
@@ -75,6 +77,9 @@ class ViewRunner {
     void advance_to_next_pass(ViewState& view, TimePoint now);
     void advance_picture(ViewState& view, TimePoint now);
     void observe(ViewState& view, TimePoint now);
+    void collect_failed_tiles(ViewState& view);
+    bool fails_everywhere(const ViewState& view) const;
+    void give_up(ViewState& view, TimePoint now);
     void account(ViewState& view, const MergeReport& report, Dispatcher::Taken taken);
     void show(ViewState& view, TimePoint now);
     void finish(ViewState& view, TimePoint now);

@@ -37,7 +37,8 @@ struct DisplayedState {
 struct Run {
     session::Phase phase = session::Phase::WaitingForNodes;
     TimePoint started{}, rendering_since{};
-    TimePoint without_nodes_since{};
+    TimePoint without_nodes_since{};       // or without progress of those that sync
+    std::uint64_t synced_bytes = 0;        // by nodes that sync, when that was last checked
     std::optional<TimePoint> ready_since;  // with a budget: the nodes are ready
     std::optional<TimePoint> deadline;     // of sampling
     std::string cost_key;                  // with a budget: key of the predicted cost (time_budget.h)
@@ -88,8 +89,8 @@ struct ViewState {
     bool wait_notified = false;
     TimePoint progress_sent{};
     std::optional<TimePoint> orphaned;  // since it has no watchers; it waits for its owner to reconnect
-    std::uint32_t failures = 0;         // units that failed on a back-end
-    std::string problem;                // why it is not rendered; "" = none
+    std::vector<session::FailedTile> failed_tiles;  // of its passes since the restart, in the full size
+    std::string problem;                            // why it is not rendered; "" = none
 
     bool in_group() const { return group_priority.has_value(); }
     std::uint32_t priority() const { return group_priority.value_or(1); }

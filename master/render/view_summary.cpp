@@ -6,6 +6,24 @@
 
 namespace tessera::master {
 
+Rect in_full_size(const ViewState& view, const Pass& pass, const Rect& rect) {
+    const std::uint32_t scale = pass.kind == Pass::Kind::Coarse    ? pass.scale
+                                : pass.kind == Pass::Kind::Picture ? view.run.scale
+                                                                   : 1;
+    if (scale == 1) return rect;
+    const Rect& window = view.request.view.window;  // the windows of scaled views begin at 0
+    const auto factor = static_cast<std::int32_t>(scale);
+    return intersection(
+        {window.x + factor * rect.x, window.y + factor * rect.y, factor * rect.width, factor * rect.height},
+        window);
+}
+
+std::string failed_tiles_text(const ViewState& view) {
+    const std::size_t count = view.failed_tiles.size();
+    return std::to_string(count) + (count == 1 ? " tile" : " tiles") +
+           " could not be rendered by any node that tried: " + view.failed_tiles.front().message;
+}
+
 bool has_picture(const ViewState& view, session::PictureEncoding wanted) {
     return wanted != session::PictureEncoding::None && view.run.samples > 0 && view.is_last_pass();
 }
@@ -39,6 +57,13 @@ session::ViewSummary summary_of(const ViewState& view, const SceneFacts& facts,
     }
     if (run.first_picture) done.first_picture_seconds = seconds(*run.first_picture - run.started);
     for (const auto& [id, node] : run.nodes) done.nodes.push_back(node);
+    for (const session::FailedTile& tile : view.failed_tiles) {
+        constexpr std::size_t MaxMessages = 8, MaxLength = 400;  // the others fail alike
+        if (done.failed_tiles.size() == session::MaxFailedTiles) break;
+        done.failed_tiles.push_back(tile);
+        std::string& message = done.failed_tiles.back().message;
+        message.resize(done.failed_tiles.size() > MaxMessages ? 0 : std::min(message.size(), MaxLength));
+    }
     done.wire_bytes = {.control = bytes.control - run.bytes_before.control,
                        .blobs = bytes.blobs - run.bytes_before.blobs,
                        .film = bytes.film - run.bytes_before.film};

@@ -6,6 +6,11 @@
 
 namespace tessera::master {
 
+// A rectangle of the pass in pixels of the whole picture.
+Rect in_full_size(const ViewState& view, const Pass& pass, const Rect& rect);
+// "2 tiles could not be rendered by any node: ...", with the command that replays the first.
+std::string failed_tiles_text(const ViewState& view);
+
 // Whether the view ends with a picture: one is wanted, and the last pass has samples.
 bool has_picture(const ViewState& view, session::PictureEncoding wanted);
 

@@ -125,7 +125,6 @@ void Views::change(ViewState& view, session::ViewRequest&& request, Version vers
         }
     }
     view.request = std::move(request);
-    view.failures = 0;
     view.problem.clear();
     if (is_new) view.waits_since = now;
     const bool wait = view.awaiting_first_frame();
@@ -267,7 +266,6 @@ bool Views::scene_changed(const scene::ChangeList& changes, const scene::Scene& 
         view.version = changes.to;
         if (restarts) {
             view.problem.clear();
-            view.failures = 0;
             view.restart_wanted = true;
             passes_.end_all(view);
         } else {
@@ -307,10 +305,6 @@ void Views::restore(std::vector<wire::SavedView>&& saved, Version version, Hash1
 void Views::took(const MergeReport& report, Dispatcher::Taken taken, TimePoint now) {
     ViewState* view = table_.of_pass(report.view);
     if (view != nullptr && !view->in_group()) runner_.took(*view, report, taken, now);
-}
-
-void Views::unit_failed(const Dispatcher::Failure& failure, TimePoint now) {
-    if (ViewState* view = table_.of_pass(failure.pass)) runner_.unit_failed(*view, failure.message, now);
 }
 
 bool Views::take(RenderOutput& output, TimePoint now) {
@@ -362,8 +356,13 @@ void Views::forget_orphans(TimePoint now) {
 void Views::advance(TimePoint now) {
     forget_orphans(now);
     for (auto& [id, view] : table_.all()) {
-        runner_.notify_waiting(view, now);
-        if (!view.in_group()) runner_.advance(view, now);
+        // One view that fails takes no other with it.
+        try {
+            runner_.notify_waiting(view, now);
+            if (!view.in_group()) runner_.advance(view, now);
+        } catch (const std::exception& error) {
+            runner_.fail(view, std::string("it could not be rendered: ") + error.what(), now);
+        }
     }
 }
 
@@ -372,9 +371,15 @@ void Views::deal(TimePoint now) {
     picks_.deal(capacities, now);
     std::vector<ViewState*> order;
     for (auto& [id, view] : table_.all()) {
-        if (!view.in_group() && view.restart_wanted && !table_.passes_paused &&
-            !view.awaiting_first_frame() && view.problem.empty())
-            runner_.restart(view, now);
+        const bool restarts = !view.in_group() && view.restart_wanted && !table_.passes_paused &&
+                              !view.awaiting_first_frame() && view.problem.empty();
+        if (restarts) {
+            try {
+                runner_.restart(view, now);
+            } catch (const std::exception& error) {
+                runner_.fail(view, std::string("it could not be started: ") + error.what(), now);
+            }
+        }
         if (!view.passes.empty()) order.push_back(&view);
     }
     if (!order.empty()) {

@@ -76,7 +76,6 @@ class Views {
 
     // ---- events ----
     void took(const MergeReport& report, Dispatcher::Taken taken, TimePoint now);
-    void unit_failed(const Dispatcher::Failure& failure, TimePoint now);
     bool take(RenderOutput& output, TimePoint now);  // false: not for views
     std::vector<FirstPicture> take_first_pictures();
 

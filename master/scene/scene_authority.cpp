@@ -182,6 +182,21 @@ SceneAuthority::Answer SceneAuthority::undo(EditorRecord& editor, const scene::E
     return carry_out(editor, edit, request);
 }
 
+std::vector<SceneAuthority::Withdrawn> SceneAuthority::withdraw_after(std::uint64_t last, const Editor& by) {
+    std::vector<Withdrawn> withdrawn;
+    for (std::uint64_t number = history_.last(); number > last; --number) {
+        const Transaction* target = history_.find(number);
+        if (target == nullptr || target->undone_by != 0) continue;
+        EditorRecord* editor = editors_.by_number(target->editor);
+        if (editor == nullptr) continue;
+        Withdrawn entry{number, editor->session, target->text};
+        // Not one of the author's own edits: their sequence and last answer stay.
+        const scene::Edit edit{.session = editor->session, .sequence = editor->last_sequence, .undo = number};
+        if (undo(*editor, edit, by).accepted) withdrawn.push_back(std::move(entry));
+    }
+    return withdrawn;
+}
+
 std::vector<std::string> SceneAuthority::locks_problems(const EditorRecord& editor,
                                                         const std::vector<scene::Entry>& entries) const {
     std::vector<std::string> problems;
@@ -201,6 +216,18 @@ void SceneAuthority::index(const std::vector<scene::ObjectChange>& changes, Dire
         if (direction == Direction::Revert) std::swap(from, to);
         referrers_.replace(change.id, from, to);
     }
+    graph_size_.changed(changes, referrers_);
+}
+
+std::vector<std::string> SceneAuthority::problems_after(const std::vector<scene::ObjectChange>& changes) {
+    std::vector<std::string> problems;
+    for (const scene::Problem& problem : scene::validate_changes(scene_, referrers_, changes)) {
+        if (problems.size() < MaxProblems) problems.push_back(problem.message);
+    }
+    if (!problems.empty()) return problems;
+    if (const Expected<void> counted = graph_size_.count(scene_); !counted)
+        problems.push_back(counted.error().what());
+    return problems;
 }
 
 void SceneAuthority::take_back(const std::vector<scene::ObjectChange>& changes) {
@@ -208,9 +235,27 @@ void SceneAuthority::take_back(const std::vector<scene::ObjectChange>& changes) 
     index(changes, Direction::Revert);
 }
 
+// Nodes check the sizes that they fetch: a wrong one would keep them waiting for ever.
+std::vector<std::string> SceneAuthority::blob_problems(const std::vector<scene::Entry>& entries) const {
+    std::vector<std::string> problems;
+    for (const scene::Entry& entry : entries) {
+        for (const scene::BlobRef& reference : scene::referenced_blobs(entry)) {
+            const scene::BlobPtr blob = reference.empty() ? nullptr : blobs_->find(reference.hash);
+            if (!blob || blob->bytes().size() == reference.byte_size || problems.size() == MaxProblems)
+                continue;
+            problems.push_back("object " + std::to_string(scene::id(entry).value) + ": blob " +
+                               to_hex(reference.hash).substr(0, 12) + " has " +
+                               std::to_string(blob->bytes().size()) + " bytes, not " +
+                               std::to_string(reference.byte_size) + " as its reference says");
+        }
+    }
+    return problems;
+}
+
 SceneAuthority::Answer SceneAuthority::carry_out(EditorRecord& editor, const scene::Edit& edit,
                                                  const Request& request) {
     Answer answer{.version = version(), .problems = locks_problems(editor, request.entries)};
+    if (answer.problems.empty()) answer.problems = blob_problems(request.entries);
     if (!answer.problems.empty()) return answer;
     const auto changes = scene::apply_and_observe(scene_, request.entries);
     if (!changes) {
@@ -218,9 +263,7 @@ SceneAuthority::Answer SceneAuthority::carry_out(EditorRecord& editor, const sce
         return answer;
     }
     index(*changes, Direction::Apply);
-    for (const scene::Problem& problem : scene::validate_changes(scene_, referrers_, *changes)) {
-        if (answer.problems.size() < MaxProblems) answer.problems.push_back(problem.message);
-    }
+    answer.problems = problems_after(*changes);
     Transaction* open = open_transaction(editor, edit, *changes);
     const std::uint64_t number = open ? open->number : history_.last() + 1;
     if (answer.problems.empty() && recorder_) {

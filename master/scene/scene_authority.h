@@ -13,6 +13,7 @@
 #include "master/scene/editors.h"
 #include "master/scene/object_locks.h"
 #include "master/scene/version_log.h"
+#include "mediator/scene/graph_size.h"
 #include "mediator/scene/referrers.h"
 #include "mediator/session/edits.h"
 
@@ -52,6 +53,15 @@ class SceneAuthority {
     Answer submit(const scene::Edit& edit, const Editor& who = {});
     // Blobs that the edit needs and that are not in the store.
     std::vector<scene::BlobRef> missing_blobs(const scene::Edit& edit) const;
+
+    // Undoes, youngest first, the transactions after `last` that are in force: nodes cannot build them. An undo that is
+    // recorded and listed like one by their author; `by` names who asked for it.
+    struct Withdrawn {
+        std::uint64_t transaction = 0;
+        SessionId author;  // 0: not connected
+        std::string text;  // what it was
+    };
+    std::vector<Withdrawn> withdraw_after(std::uint64_t last, const Editor& by);
 
     // If the camera has left the neighbourhood of the render origin's cell: moves the origin to the camera's
     // cell, and publishes.
@@ -103,6 +113,9 @@ class SceneAuthority {
     Answer change(EditorRecord& editor, const scene::Edit& edit, const Editor& who);
     Answer undo(EditorRecord& editor, const scene::Edit& edit, const Editor& who);
     Answer carry_out(EditorRecord& editor, const scene::Edit& edit, const Request& request);
+    // Dangling references and so on, or a graph that back-ends cannot hold.
+    std::vector<std::string> problems_after(const std::vector<scene::ObjectChange>& changes);
+    std::vector<std::string> blob_problems(const std::vector<scene::Entry>& entries) const;
     std::vector<std::string> locks_problems(const EditorRecord& editor,
                                             const std::vector<scene::Entry>& entries) const;
     enum class Direction { Apply, Revert };
@@ -118,6 +131,7 @@ class SceneAuthority {
     EditRecorder* recorder_ = nullptr;
     scene::Scene scene_;
     scene::ReferrerIndex referrers_;  // of scene_
+    scene::GraphSize graph_size_;     // of scene_
     VersionLog versions_;
     Editors editors_;
     ObjectLocks locks_;

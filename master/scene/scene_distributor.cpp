@@ -64,7 +64,7 @@ void SceneDistributor::refused(NodeRecord& node, const wire::SceneRefused& refus
     if (refusal.version != authority_.version()) return;
     node.refused = refusal.version;
     node.refusal = refusal.reason;
-    events_({wire::Severity::Warning, "node " + node.hello.name + " is out of memory for version " +
+    events_({wire::Severity::Warning, "node " + node.hello.name + " cannot build version " +
                                           std::to_string(refusal.version.number) + ": " + refusal.reason});
 }
 

@@ -20,6 +20,14 @@ struct Rect {
     constexpr bool contains(std::int32_t px, std::int32_t py) const {
         return px >= x && px < right() && py >= y && py < bottom();
     }
+    // Of a received one: sums of its numbers stay within their type.
+    constexpr const char* malformed() const {
+        constexpr std::int32_t Limit = 1 << 24;
+        for (const std::int32_t value : {x, y, width, height}) {
+            if (value < -Limit || value > Limit) return "a rectangle is absurd";
+        }
+        return nullptr;
+    }
     friend constexpr bool operator==(const Rect&, const Rect&) = default;
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "x", &Rect::x), row(2, "y", &Rect::y), row(3, "width", &Rect::width),

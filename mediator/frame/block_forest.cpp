@@ -4,7 +4,8 @@
 
 namespace tessera::frame {
 
-BlockForest::Outcome BlockForest::insert(FilmTile block) {
+BlockForest::Outcome BlockForest::insert(FilmTile block,
+                                         const std::function<bool(const SampleBlock&)>& may_replace) {
     const SampleBlock range = block.block;
     const auto after = blocks_.upper_bound(range.first);
     if (after != blocks_.begin()) {
@@ -15,7 +16,11 @@ BlockForest::Outcome BlockForest::insert(FilmTile block) {
         if (before.block.contains(range)) return Outcome::Duplicate;
     }
     Outcome outcome = Outcome::Merged;
-    auto inside = blocks_.lower_bound(range.first);
+    const auto first_inside = blocks_.lower_bound(range.first);
+    for (auto inside = first_inside; inside != blocks_.end() && inside->first < range.end(); ++inside) {
+        if (may_replace && !may_replace(inside->second.block)) return Outcome::Overlap;
+    }
+    auto inside = first_inside;
     while (inside != blocks_.end() && inside->first < range.end()) {
         inside = blocks_.erase(inside);
         outcome = Outcome::Replaced;

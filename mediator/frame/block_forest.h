@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <vector>
 
@@ -16,9 +17,11 @@ class BlockForest {
         Duplicate,  // already contained, with the same bits if it can be compared
         Replaced,   // contained smaller blocks, which it replaces
         Conflict,   // the same block exists with other bits: rejected
+        Overlap,    // contains blocks that it may not replace: rejected
     };
 
-    Outcome insert(FilmTile block);
+    // `may_replace`: of the smaller blocks that it contains; empty: any.
+    Outcome insert(FilmTile block, const std::function<bool(const SampleBlock&)>& may_replace = {});
 
     bool covers(const SampleBlock& block) const;
     std::uint64_t sample_count() const;  // per pixel, rejected ones included

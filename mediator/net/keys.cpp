@@ -66,6 +66,7 @@ void KeyDirectory::create() const {
 
 std::vector<AllowedKey> KeyDirectory::allowed() const {
     const auto file = folder_ / "allowed.keys";
+    require_unwritable(file);
     return parse_allowed(file, read_text(file));
 }
 

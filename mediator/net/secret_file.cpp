@@ -53,6 +53,19 @@ std::string read_text(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
+void require_unwritable(const std::filesystem::path& path) {
+    struct stat status {};
+    if (stat(path.c_str(), &status) == 0 && (status.st_mode & 022) != 0) {
+        throw Error(ErrorCode::Refused,
+                    "'" + path.string() + "' may be changed by others: chmod go-w '" + path.string() + "'");
+    }
+    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+    if (stat(folder.c_str(), &status) == 0 && (status.st_mode & 002) != 0) {
+        throw Error(ErrorCode::Refused,
+                    "'" + path.string() + "' may be replaced by others: chmod o-w '" + folder.string() + "'");
+    }
+}
+
 void require_private(const std::filesystem::path& path) {
     struct stat status {};
     if (stat(path.c_str(), &status) != 0) {

@@ -13,6 +13,9 @@ void write_text(const std::filesystem::path& path, const std::string& text, Visi
 // At most 1 MiB. Throws Error{NotFound, Io}.
 std::string read_text(const std::filesystem::path& path);
 
+// Throws Error{Refused} with the remedy if group or others may write the file, or others its folder.
+void require_unwritable(const std::filesystem::path& path);
+
 // Throws Error{Refused} with the remedy if group or others may read or write the file.
 void require_private(const std::filesystem::path& path);
 

@@ -50,9 +50,11 @@ struct Members {
     std::vector<Member> members;
     std::vector<ObjectLock> locks;
     std::vector<ViewEntry> views;
+    std::uint64_t unlisted = 0;  // locks, members and views that did not fit
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "title", &Members::title), row(2, "members", &Members::members),
-                          row(3, "locks", &Members::locks), row(4, "views", &Members::views));
+                          row(3, "locks", &Members::locks), row(4, "views", &Members::views),
+                          row(5, "unlisted", &Members::unlisted));
     }
 };
 

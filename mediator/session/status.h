@@ -52,6 +52,8 @@ struct NodeStatus {
     double samples_per_second = 0, round_trip_seconds = 0;
     bool stuck = false;
     double clock_offset_seconds = 0, clock_bound_seconds = 0;  // its clock minus the master's, +- bound
+    std::string quarantine;                                    // why it gets no work; "" = it does
+    double quarantine_seconds = 0;                             // until it does
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "summary", &NodeStatus::summary), row(2, "phase", &NodeStatus::phase),
                           row(3, "version", &NodeStatus::version),
@@ -60,7 +62,9 @@ struct NodeStatus {
                           row(6, "round_trip_seconds", &NodeStatus::round_trip_seconds),
                           row(7, "stuck", &NodeStatus::stuck),
                           row(8, "clock_offset_seconds", &NodeStatus::clock_offset_seconds),
-                          row(9, "clock_bound_seconds", &NodeStatus::clock_bound_seconds));
+                          row(9, "clock_bound_seconds", &NodeStatus::clock_bound_seconds),
+                          row(10, "quarantine", &NodeStatus::quarantine),
+                          row(11, "quarantine_seconds", &NodeStatus::quarantine_seconds));
     }
 };
 
@@ -115,6 +119,8 @@ struct ClusterStatus {
     SceneStatus scene;
     std::uint64_t resyncs = 0;  // times that a node had to be sent the whole scene again
     DisplayStatus display;
+    std::uint64_t contradictions = 0;     // nodes of one kind gave different bits for the same samples
+    std::uint64_t caught_exceptions = 0;  // in the master's event loop: bugs, which it survived
     static constexpr auto describe(auto row) {
         using Self = ClusterStatus;
         return std::tuple(row(1, "software", &Self::software), row(2, "version", &Self::version),
@@ -124,7 +130,9 @@ struct ClusterStatus {
                           row(8, "dropped_messages", &Self::dropped_messages), row(9, "units", &Self::units),
                           row(10, "wire_bytes", &Self::wire_bytes), row(11, "nodes", &Self::nodes),
                           row(12, "scene", &Self::scene), row(13, "resyncs", &Self::resyncs),
-                          row(14, "display", &Self::display));
+                          row(14, "display", &Self::display),
+                          row(15, "contradictions", &Self::contradictions),
+                          row(16, "caught_exceptions", &Self::caught_exceptions));
     }
 };
 

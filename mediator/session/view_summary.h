@@ -9,6 +9,7 @@
 
 #include "mediator/base/clock.h"
 #include "mediator/base/ids.h"
+#include "mediator/base/rect.h"
 #include "mediator/session/view_request.h"
 
 // Progress and result of a view.
@@ -33,9 +34,17 @@ struct ViewProgress {
     }
 };
 
-enum class Outcome : std::uint8_t { Complete, TimeUp, Stopped, NoNodes, Failed };
+enum class Outcome : std::uint8_t {
+    Complete,
+    TimeUp,
+    Stopped,
+    NoNodes,
+    Failed,
+    Incomplete  // complete but for tiles that no node could render
+};
 constexpr auto enumerators(Outcome) {
-    return std::to_array<std::string_view>({"complete", "time_up", "stopped", "no_nodes", "failed"});
+    return std::to_array<std::string_view>(
+        {"complete", "time_up", "stopped", "no_nodes", "failed", "incomplete"});
 }
 
 struct NodeSummary {
@@ -100,6 +109,19 @@ struct PictureSummary {
     }
 };
 
+// A tile of the picture that no node could render, or only with fewer samples.
+struct FailedTile {
+    Rect rect;                  // of the picture
+    std::uint64_t samples = 0;  // per pixel that it has
+    std::string message;        // the failure, with the command that replays it
+    static constexpr auto describe(auto row) {
+        using Self = FailedTile;
+        return std::tuple(row(1, "rect", &Self::rect), row(2, "samples", &Self::samples),
+                          row(3, "message", &Self::message));
+    }
+};
+inline constexpr std::size_t MaxFailedTiles = 64;
+
 // The result of a view after its stop rule ended it.
 struct ViewSummary {
     Outcome outcome = Outcome::Complete;
@@ -114,6 +136,7 @@ struct ViewSummary {
     WireBytes wire_bytes;
     PictureSummary picture;
     std::uint64_t min_samples = 0, max_samples = 0;  // per pixel; with a picture
+    std::vector<FailedTile> failed_tiles;            // the first ones
     static constexpr auto describe(auto row) {
         using Self = ViewSummary;
         return std::tuple(
@@ -125,7 +148,8 @@ struct ViewSummary {
             row(10, "triangles", &Self::triangles), row(11, "instances", &Self::instances),
             row(12, "lights", &Self::lights), row(13, "nodes", &Self::nodes), row(14, "units", &Self::units),
             row(15, "wire_bytes", &Self::wire_bytes), row(16, "picture", &Self::picture),
-            row(17, "min_samples", &Self::min_samples), row(18, "max_samples", &Self::max_samples));
+            row(17, "min_samples", &Self::min_samples), row(18, "max_samples", &Self::max_samples),
+            row(19, "failed_tiles", &Self::failed_tiles, Limit{MaxFailedTiles}));
     }
 };
 

@@ -90,7 +90,16 @@ Expected<void> BlobFetcher::receive(BlobChunk&& chunk, TimePoint now) {
 
 void BlobFetcher::absent(const Hash256& hash) {
     const auto it = partial_.find(hash);
-    if (it != partial_.end()) it->second.absent = true;
+    if (it == partial_.end()) return;
+    it->second.absent = true;
+    it->second.requested = it->second.data.size();  // others may be requested instead
+}
+
+void BlobFetcher::forget(const Hash256& hash) {
+    const auto it = partial_.find(hash);
+    if (it == partial_.end()) return;
+    wanted_bytes_ -= it->second.total;
+    partial_.erase(it);
 }
 
 void BlobFetcher::forget_all() {

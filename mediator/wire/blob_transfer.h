@@ -35,6 +35,7 @@ class BlobFetcher {
     // received data is dropped and requested again).
     Expected<void> receive(BlobChunk&& chunk, TimePoint now);
     void absent(const Hash256& hash);  // the peer does not have it
+    void forget(const Hash256& hash);  // it is not wanted any more
     void forget_all();
     bool idle() const { return partial_.empty(); }
     std::vector<Hash256> absent_blobs() const;

@@ -59,19 +59,28 @@ void put_film(ByteWriter& out, const frame::FilmTile& film) {
     out.put_all(std::span(film.planes));
 }
 
-frame::FilmTile get_film(ByteReader& in) {
-    const auto rect = in.get<Rect>();
+struct FilmArea {
+    Rect rect;
     frame::SampleBlock block;
-    block.first = in.get<std::uint64_t>();
-    block.level = in.get<std::uint32_t>();
-    const frame::ChannelSet channels = get_channels(in);
-    const auto nonfinite = in.get<std::uint64_t>();
+};
+FilmArea get_area(ByteReader& in) {
+    FilmArea area{.rect = in.get<Rect>(), .block = {}};
+    area.block.first = in.get<std::uint64_t>();
+    area.block.level = in.get<std::uint32_t>();
     constexpr std::int32_t MaxEdge = 65536;
+    const Rect& rect = area.rect;
     if (rect.empty() || rect.x < 0 || rect.y < 0 || rect.width > MaxEdge || rect.height > MaxEdge ||
         rect.x > MaxEdge || rect.y > MaxEdge || rect.pixel_count() > MaxPixels) {
         in.fail("the tile's size is absurd");
     }
-    if (block.level >= 32 || !block.is_aligned()) in.fail("a block of samples is not aligned");
+    if (area.block.level >= 32 || !area.block.is_aligned()) in.fail("a block of samples is not aligned");
+    return area;
+}
+
+frame::FilmTile get_film(ByteReader& in) {
+    const auto [rect, block] = get_area(in);
+    const frame::ChannelSet channels = get_channels(in);
+    const auto nonfinite = in.get<std::uint64_t>();
     const bool uniform = in.get<std::uint8_t>() == UniformCounts;
     // The size is known before anything is allocated.
     const std::size_t pixels = rect.pixel_count();
@@ -88,7 +97,34 @@ frame::FilmTile get_film(ByteReader& in) {
     return film;
 }
 
-// Non-finite moments, or more samples than a block can hold, would corrupt the film they are merged with.
+// Values that a back-end cannot have computed would corrupt the film that they are merged with.
+const char* malformed_plane(const frame::ChannelInfo& info, std::uint32_t plane,
+                            std::span<const float> values) {
+    constexpr float Largest = std::numeric_limits<float>::max();
+    const auto all = [&](const auto& is_fine) { return std::all_of(values.begin(), values.end(), is_fine); };
+    const auto finite = [&] { return all([](float v) { return v >= -Largest && v <= Largest; }); };
+    switch (info.rule) {
+        case frame::MergeRule::Moments:
+            if (plane < info.components) return finite() ? nullptr : "a mean is not finite";
+            // +inf: squares of differences above 1.8e19 overflow.
+            return all([](float v) { return v >= 0.0f; }) ? nullptr
+                                                          : "a sum of squares is negative or not a number";
+        case frame::MergeRule::Sum:
+            return finite() ? nullptr : "a sum is not finite";
+        case frame::MergeRule::Minimum:  // +inf: nothing was found
+            return all([](float v) { return v >= -Largest; }) ? nullptr : "a minimum is not a number";
+        case frame::MergeRule::Maximum:
+            return all([](float v) { return v <= Largest; }) ? nullptr : "a maximum is not a number";
+        case frame::MergeRule::Nearest:  // the key; the others hold any bits
+            if (plane > 0) return nullptr;
+            return all([](float v) { return v >= -Largest; }) ? nullptr : "a distance is not a number";
+        case frame::MergeRule::First:
+            return nullptr;
+    }
+    return nullptr;
+}
+
+// Checks counts and all planes.
 const char* malformed_block(const frame::FilmTile& film) {
     const std::uint64_t limit = film.block.count();
     std::uint64_t accepted = 0;
@@ -97,19 +133,15 @@ const char* malformed_block(const frame::FilmTile& film) {
         accepted += count;
     }
     if (accepted + film.nonfinite_samples != limit * film.pixel_count()) return "the counts do not add up";
-    for (const frame::ChannelInfo& info : frame::channel_table()) {
-        if (!film.channels.contains(info.channel) || info.rule != frame::MergeRule::Moments) continue;
-        const std::uint32_t first = film.channels.first_plane(info.channel);
-        for (std::uint32_t plane = 0; plane < info.components; ++plane) {
-            for (const float mean : film.plane(first + plane)) {
-                if (!(mean >= -std::numeric_limits<float>::max() &&
-                      mean <= std::numeric_limits<float>::max())) {
-                    return "a mean is not finite";
-                }
-            }
-        }
-    }
-    return nullptr;
+    const char* problem = nullptr;
+    std::uint32_t first = 0;
+    film.channels.for_each([&](const frame::ChannelInfo& info) {
+        for (std::uint32_t plane = 0; plane < info.plane_count() && problem == nullptr; ++plane)
+            problem = malformed_plane(info, plane, film.plane(first + plane));
+        first += info.plane_count();
+        return problem == nullptr;
+    });
+    return problem;
 }
 
 template <Described T>
@@ -192,7 +224,7 @@ std::optional<std::uint32_t> number_of(std::span<const std::byte> bytes) {
 }  // namespace
 
 const char* FilmPart::malformed() const {
-    return part < parts ? malformed_block(film) : "a part is not one of its parts";
+    return malformed_block(film);
 }
 
 // The film is put together in memory of this size: no larger than any view's.
@@ -234,6 +266,27 @@ bool is_bulk(std::span<const std::byte> bytes) {
 
 bool is_film(std::span<const std::byte> bytes) {
     return number_of(bytes) == table::Bulk::number(FilmPart{});
+}
+
+Expected<FilmHead> film_head(std::span<const std::byte> bytes) {
+    if (!is_film(bytes)) return failure(ErrorCode::InvalidInput, "malformed message: not film");
+    try {
+        ByteReader in(bytes.subspan(8));
+        FilmPart part;
+        FilmArea area;
+        for_each_row<FilmPart>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
+            set_row<I>(part, [&]<class V>(V& value) {
+                if constexpr (std::is_same_v<V, frame::FilmTile>) {
+                    area = get_area(in);
+                } else {
+                    get(in, value);
+                }
+            });
+        });
+        return FilmHead{part.unit, part.view, part.revision, part.version, area.rect, area.block};
+    } catch (const Error& error) {
+        return tl::unexpected(error);
+    }
 }
 
 Expected<BulkMessage> decode_bulk(std::span<const std::byte> bytes) {

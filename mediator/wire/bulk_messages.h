@@ -47,22 +47,23 @@ struct BlobAbsent {
     Hash256 hash;
     static constexpr auto describe(auto row) { return std::tuple(row(1, "hash", &BlobAbsent::hash)); }
 };
-// Node to master: film blocks of a unit; a stopped unit sends several, `part` of `parts`.
+// Node to master: a block of film. It has the samples of one unit, of several units whose blocks are merged, or of a part
+// of a unit that was stopped.
 struct FilmPart {
-    UnitId unit;
+    UnitId unit;  // one of them
     ViewId view;
     std::uint64_t revision = 0;
     Version version;
-    std::uint16_t part = 0, parts = 1;
-    std::uint64_t rays = 0;     // of the whole unit, in part 0
+    std::uint32_t units = 1;    // that are complete with it
+    std::uint64_t rays = 0;     // of these samples; of a stopped unit all are in its first block
     std::uint64_t busy_ns = 0;  // likewise
     frame::FilmTile film;
     static constexpr auto describe(auto row) {
         using Self = FilmPart;
-        return std::tuple(
-            row(1, "unit", &Self::unit), row(2, "view", &Self::view), row(3, "revision", &Self::revision),
-            row(4, "version", &Self::version), row(5, "part", &Self::part), row(6, "parts", &Self::parts),
-            row(7, "rays", &Self::rays), row(8, "busy_ns", &Self::busy_ns), row(9, "film", &Self::film));
+        return std::tuple(row(1, "unit", &Self::unit), row(2, "view", &Self::view),
+                          row(3, "revision", &Self::revision), row(4, "version", &Self::version),
+                          row(5, "units", &Self::units), row(6, "rays", &Self::rays),
+                          row(7, "busy_ns", &Self::busy_ns), row(8, "film", &Self::film));
     }
     const char* malformed() const;
 };

@@ -22,6 +22,16 @@ Expected<BulkMessage> decode_bulk(std::span<const std::byte> bytes);
 bool is_bulk(std::span<const std::byte> bytes);
 // Whether the header is that of a node's film; lets an event loop forward film without decoding it.
 bool is_film(std::span<const std::byte> bytes);
+// What film is of, without its planes, which are not looked at.
+struct FilmHead {
+    UnitId unit;
+    ViewId view;
+    std::uint64_t revision = 0;
+    Version version;
+    Rect rect;
+    frame::SampleBlock block;
+};
+Expected<FilmHead> film_head(std::span<const std::byte> bytes);
 
 // Content of blobs that hold scene changes.
 std::vector<std::byte> encode(const scene::ChangeList& changes);

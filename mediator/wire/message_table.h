@@ -16,6 +16,7 @@ enum class Senders : std::uint8_t {
     Master,  // sent by the master only
     Nodes,
     Editors,
+    Operators,
     Clients,  // including viewers
     Everyone,
 };

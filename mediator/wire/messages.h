@@ -50,7 +50,8 @@ using Control = MessageTable<
     MessageRow<64, "view_progress", ViewProgress, Master>, MessageRow<65, "view_done", ViewDone, Master>,
     MessageRow<66, "set_view_filter", SetViewFilter, Editors>, MessageRow<67, "read_jobs", ReadJobs, Clients>,
     MessageRow<68, "jobs", Jobs, Master>, MessageRow<69, "fetch_job", FetchJob, Clients>,
-    MessageRow<70, "cancel_job", CancelJob, Editors>>;
+    MessageRow<70, "cancel_job", CancelJob, Editors>, MessageRow<71, "film_taken", FilmTaken, Master>,
+    MessageRow<72, "manage_node", ManageNode, Operators>>;
 
 // The number is the second word of a bulk message. Add retired ones to the check below.
 using Bulk = MessageTable<

@@ -20,7 +20,11 @@
 // Handshake and heartbeats of all peers, and messages between the master and its nodes.
 namespace tessera::wire {
 
-inline constexpr std::uint32_t ProtocolVersion = 2;
+inline constexpr std::uint32_t ProtocolVersion = 3;
+
+// Names appear in status and summaries of many peers, which have to fit messages.
+inline constexpr std::size_t MaxNameBytes = 256;
+inline constexpr std::uint32_t MaxConcurrentUnits = 65536;
 
 enum class PeerKind : std::uint8_t { Client, Node };
 constexpr auto enumerators(PeerKind) {
@@ -60,7 +64,14 @@ struct Hello {
             row(14, "renderers", &Hello::renderers), row(15, "render_revision", &Hello::render_revision),
             row(16, "later_channels", channels(1)));
     }
-    const char* malformed() const { return channels.is_known() ? nullptr : "a channel is unknown"; }
+    const char* malformed() const {
+        if (!channels.is_known()) return "a channel is unknown";
+        for (const std::string* text : {&name, &host, &software, &backend, &kind}) {
+            if (text->size() > MaxNameBytes) return "a name is longer than 256 bytes";
+        }
+        if (concurrent_units > MaxConcurrentUnits) return "a node renders at most 65536 units at a time";
+        return nullptr;
+    }
 };
 
 struct Welcome {
@@ -99,13 +110,15 @@ struct Heartbeat {
     std::vector<UnitId> in_flight;
     std::uint32_t free_slots = 0;
     std::uint64_t last_work_sequence = 0;  // of the latest Work received; later ones have not arrived yet
+    std::uint64_t scene_bytes = 0;         // of blobs received since the start; grows while syncing
     static constexpr auto describe(auto row) {
         return std::tuple(
             row(1, "sent_at", &Heartbeat::sent_at), row(2, "echo_sent_at", &Heartbeat::echo_sent_at),
             row(3, "echo_delay", &Heartbeat::echo_delay), row(4, "phase", &Heartbeat::phase),
             row(5, "progress", &Heartbeat::progress), row(6, "version", &Heartbeat::version),
             row(7, "in_flight", &Heartbeat::in_flight), row(8, "free_slots", &Heartbeat::free_slots),
-            row(9, "last_work_sequence", &Heartbeat::last_work_sequence));
+            row(9, "last_work_sequence", &Heartbeat::last_work_sequence),
+            row(10, "scene_bytes", &Heartbeat::scene_bytes));
     }
 };
 
@@ -167,8 +180,11 @@ struct SceneRefused {
 // ---- work ----
 
 struct OpenView {
-    view::View view;  // a new revision replaces the old one
-    static constexpr auto describe(auto row) { return std::tuple(row(1, "view", &OpenView::view)); }
+    view::View view;       // a new revision replaces the old one
+    Duration hold_film{};  // film may wait so long to be merged with that of further units
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "view", &OpenView::view), row(2, "hold_film", &OpenView::hold_film));
+    }
 };
 struct CloseView {
     ViewId view;
@@ -199,6 +215,12 @@ struct UnitReleased {
         return std::tuple(row(1, "unit", &UnitReleased::unit), row(2, "reason", &UnitReleased::reason),
                           row(3, "message", &UnitReleased::message));
     }
+};
+// Master to node: bytes of film messages that have been merged or dropped since its Welcome. What a node has sent beyond
+// that is in flight: it sends no more than the line carries in a moment, so that film is never outdated on arrival.
+struct FilmTaken {
+    std::uint64_t bytes = 0;
+    static constexpr auto describe(auto row) { return std::tuple(row(1, "bytes", &FilmTaken::bytes)); }
 };
 // Master to node: finish the units being rendered and disconnect.
 struct Leave {

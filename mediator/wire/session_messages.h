@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -181,12 +183,35 @@ struct Trace {
     }
 };
 
+// An operator's order about all nodes of that name. Answered by RequestDone.
+struct ManageNode {
+    enum class Order : std::uint8_t {
+        Release,  // from quarantine: it gets work again
+        Drain     // it finishes what it renders, and leaves
+    };
+    std::uint64_t request = 0;
+    std::string name;
+    Order order = Order::Release;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "request", &ManageNode::request), row(2, "name", &ManageNode::name),
+                          row(3, "order", &ManageNode::order));
+    }
+};
+constexpr auto enumerators(ManageNode::Order) {
+    return std::to_array<std::string_view>({"release", "drain"});
+}
+
+// A status with hundreds of nodes comes in pages: each request asks for the nodes after the last one received.
 struct StatusRequest {
-    static constexpr auto describe(auto) { return std::tuple(); }
+    NodeId after;  // 0: from the first
+    static constexpr auto describe(auto row) { return std::tuple(row(1, "after", &StatusRequest::after)); }
 };
 struct StatusReply {
     session::ClusterStatus status;
-    static constexpr auto describe(auto row) { return std::tuple(row(1, "status", &StatusReply::status)); }
+    bool more = false;  // there are more nodes than fitted
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "status", &StatusReply::status), row(2, "more", &StatusReply::more));
+    }
 };
 
 }  // namespace tessera::wire

@@ -117,7 +117,7 @@ TEST_F(DeviceMemoryTest, ANodeOutOfMemoryReportsItAndTakesTheNextVersion) {
     EXPECT_EQ(none.summary.outcome, session::Outcome::NoNodes);
     EXPECT_NE(none.summary.message.find("node-1: capacity for 1 lamps, not for 2"), std::string::npos)
         << none.summary.message;
-    EXPECT_TRUE(was_logged("is out of memory for version"));
+    EXPECT_TRUE(was_logged("cannot build version"));
 
     submit({Create{lamp(2), Light{}}});  // worse still
     EXPECT_EQ(render().summary.outcome, session::Outcome::NoNodes);
@@ -136,6 +136,41 @@ TEST_F(DeviceMemoryTest, TheOthersRenderWithoutIt) {
     std::size_t taking_part = 0;
     for (const auto& node : result.summary.nodes) taking_part += node.samples > 0 ? 1 : 0;
     EXPECT_EQ(taking_part, 1u);
+}
+
+TEST_F(DeviceMemoryTest, ALiveEditThatNoNodeCanBuildIsUndoneAndItsAuthorNotified) {
+    cluster.add_node(with_room(1));
+    session = cluster.member("ann", blobs);
+    const auto node_is_at = [&](Version version) {
+        for (int i = 0; i < 500; ++i) {
+            const session::ClusterStatus status = session->status();
+            if (status.nodes.size() == 1 && status.nodes[0].version.number >= version.number) return true;
+            std::this_thread::sleep_for(10ms);
+        }
+        return false;
+    };
+    const ObjectId fits = session->new_id(), too_many = session->new_id();
+    const auto first_edit = session->submit({Create{fits, Light{}}});
+    ASSERT_TRUE(first_edit.accepted);
+    ASSERT_TRUE(node_is_at(first_edit.version));
+    const auto second = session->submit({Create{too_many, Light{.name = "lamp"}}});
+    ASSERT_TRUE(second.accepted) << "the master does not know the sizes of devices";
+
+    std::vector<std::string> notices;
+    for (int i = 0; i < 500 && notices.empty(); ++i) {
+        std::this_thread::sleep_for(10ms);
+        session->pump();
+        notices = session->take_notices();
+    }
+    ASSERT_EQ(notices.size(), 1u);
+    EXPECT_NE(notices[0].find("edit " + std::to_string(second.transaction)), std::string::npos) << notices[0];
+    EXPECT_NE(notices[0].find("node-1: capacity for 1 lamps, not for 2"), std::string::npos) << notices[0];
+    session->refresh();
+    EXPECT_NE(session->scene().find(fits), nullptr);
+    EXPECT_EQ(session->scene().find(too_many), nullptr);
+    EXPECT_EQ(session->history(1).at(0).undoes, second.transaction);
+    EXPECT_TRUE(node_is_at(session->scene().version())) << "the node goes on";
+    EXPECT_TRUE(session->submit({Create{session->new_id(), Material{}}}).accepted) << "so does the author";
 }
 
 TEST_F(DeviceMemoryTest, TheNextSceneIsSentToItAgain) {

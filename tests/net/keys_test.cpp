@@ -54,6 +54,18 @@ TEST_F(KeyFiles, CreateMakesAMasterAndOnePairPerRole) {
     EXPECT_EQ(mode(folder_ / "keys"), 0700u);
 }
 
+TEST_F(KeyFiles, AnAllowListThatOthersMayChangeIsRefusedWithTheRemedy) {
+    const std::filesystem::path list = folder_ / "keys" / "allowed.keys";
+    ASSERT_EQ(::chmod(list.c_str(), 0622), 0);
+    const auto file = error_of([&] { (void)keys_.allowed(); });
+    EXPECT_EQ(file.first, ErrorCode::Refused);
+    EXPECT_NE(file.second.find("chmod go-w"), std::string::npos) << file.second;
+    ASSERT_EQ(::chmod(list.c_str(), 0644), 0);
+    EXPECT_EQ(keys_.allowed().size(), 4u);
+    ASSERT_EQ(::chmod(list.parent_path().c_str(), 0777), 0);
+    EXPECT_EQ(error_of([&] { (void)keys_.allowed(); }).first, ErrorCode::Refused);
+}
+
 TEST_F(KeyFiles, CreateNeverReplacesAMaster) {
     const KeyPair before = keys_.master();
     EXPECT_EQ(error_of([&] { keys_.create(); }).first, ErrorCode::Refused);

@@ -119,8 +119,10 @@ struct MachineTest : testing::Test {
         outcome.result.blocks.push_back(frame::FilmTile(unit.tile, unit.block, {frame::Channel::Radiance}));
         return outcome;
     }
-    void finish(std::uint64_t id) {
-        machine->finished(UnitId{id}, done(unit(id)), now);
+    void finish(std::uint64_t id, const frame::SampleBlock& block = {0, 3}) {
+        view::WorkUnit finished = unit(id);
+        finished.block = block;
+        machine->finished(UnitId{id}, done(finished), now);
         collect();
     }
 

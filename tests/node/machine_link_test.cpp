@@ -131,7 +131,7 @@ TEST_F(MachineLinkTest, DrainingFinishesRunningUnitsAndReleasesTheOthers) {
     for (std::uint64_t id = 1; id <= 4; ++id) work(id);
     EXPECT_EQ(take<Render>().size(), 2u);
     actions.clear();
-    machine->leave("asked to stop", now);
+    machine->leave("asked to stop", Drain::Finish, now);
     collect();
     const auto released = sent<wire::UnitReleased>();
     ASSERT_EQ(released.size(), 2u);
@@ -157,12 +157,52 @@ TEST_F(MachineLinkTest, DrainingFinishesRunningUnitsAndReleasesTheOthers) {
     EXPECT_EQ(machine->state(), State::Left);
 }
 
+TEST_F(MachineLinkTest, HandingBackStopsRunningUnitsAndSendsTheirWholeBlocks) {
+    synced();
+    for (std::uint64_t id = 1; id <= 3; ++id) work(id);
+    EXPECT_EQ(take<Render>().size(), 2u);
+    actions.clear();
+    machine->leave("asked to stop", Drain::HandBack, now);
+    collect();
+    EXPECT_EQ(take<StopUnit>().size(), 2u);
+    EXPECT_EQ(sent<wire::UnitReleased>().size(), 1u) << "the one that waited";
+
+    // The first has half of its samples, the second none.
+    UnitOutcome half = done(unit(1));
+    half.result.status = backend::RenderStatus::Stopped;
+    half.result.blocks[0] = frame::FilmTile(unit(1).tile, {0, 2}, {frame::Channel::Radiance});
+    machine->finished(UnitId{1}, std::move(half), now);
+    UnitOutcome none;
+    none.result.status = backend::RenderStatus::Stopped;
+    machine->finished(UnitId{2}, std::move(none), now);
+    collect();
+    ASSERT_EQ(take<SendFilm>().size(), 1u);
+    machine->film_sent(UnitId{1});
+    collect();
+    const auto released = sent<wire::UnitReleased>();
+    ASSERT_EQ(released.size(), 2u);
+    for (const auto& release : released) EXPECT_EQ(release.reason, wire::ReleaseReason::Leaving);
+    EXPECT_EQ(sent<wire::Goodbye>().size(), 1u);
+    EXPECT_EQ(machine->state(), State::Left);
+}
+
+TEST_F(MachineLinkTest, HandingBackEndsAfterThreeSecondsWhateverTheLink) {
+    synced();
+    work(1);
+    machine->leave("asked to stop", Drain::HandBack, now);
+    pass(LeaveLimit - milliseconds(1));
+    EXPECT_EQ(machine->state(), State::Leaving) << "the unit has not answered yet";
+    EXPECT_LE(machine->next_event(now), now + milliseconds(1));
+    pass(milliseconds(1));
+    EXPECT_EQ(machine->state(), State::Left);
+}
+
 TEST_F(MachineLinkTest, ASecondLeaveIsImmediate) {
     synced();
     work(1);
     actions.clear();
-    machine->leave("asked to stop", now);
-    machine->leave("asked again", now);
+    machine->leave("asked to stop", Drain::Finish, now);
+    machine->leave("asked again", Drain::Finish, now);
     collect();
     EXPECT_EQ(take<StopUnit>().size(), 1u);
     const auto goodbyes = sent<wire::Goodbye>();

@@ -140,8 +140,7 @@ TEST_F(MachineWorkTest, CancellingReleasesWaitingUnitsAndStopsRunningOnes) {
     const auto films = take<SendFilm>();
     ASSERT_EQ(films.size(), 1u);
     ASSERT_EQ(films[0].parts.size(), 2u);  // blocks of 4 and 1
-    EXPECT_EQ(films[0].parts[1].part, 1u);
-    EXPECT_EQ(films[0].parts[1].parts, 2u);
+    EXPECT_EQ(films[0].parts[0].units, 0u) << "no complete unit";
     EXPECT_TRUE(sent<wire::UnitReleased>().empty());  // after its film
     machine->film_sent(UnitId{1});
     collect();
@@ -182,6 +181,74 @@ TEST_F(MachineWorkTest, AClosedViewHasNoUnits) {
     EXPECT_EQ(take<StopUnit>().size(), 1u);
     work(2);
     EXPECT_EQ(only_release().reason, ReleaseReason::UnknownView);
+}
+
+struct HeldUnitsTest : MachineWorkTest {
+    static constexpr frame::SampleBlock First{0, 3}, Second{8, 3};
+
+    HeldUnitsTest() {
+        ++view.revision;
+        send(wire::OpenView{view, seconds(5)});
+        for (const std::uint64_t id : {1u, 2u}) {
+            view::WorkUnit half = unit(id);
+            half.block = id == 1 ? First : Second;
+            send(wire::Work{++sequence, half});
+        }
+        actions.clear();
+    }
+};
+
+TEST_F(HeldUnitsTest, HalvesOfABlockAreSentMerged) {
+    finish(1, First);
+    EXPECT_TRUE(take<SendFilm>().empty());
+    const wire::Heartbeat beat = last_heartbeat();
+    EXPECT_EQ(beat.in_flight.size(), 2u) << "the master still counts on it";
+    EXPECT_EQ(beat.free_slots, 3u) << "held film takes no slot";
+    finish(2, Second);
+    const auto films = take<SendFilm>();
+    ASSERT_EQ(films.size(), 1u);
+    ASSERT_EQ(films[0].parts.size(), 1u);
+    EXPECT_EQ(films[0].parts[0].film.block, (frame::SampleBlock{0, 4}));
+    EXPECT_EQ(films[0].parts[0].units, 2u);
+    for (const UnitId unit : films[0].units) machine->film_sent(unit);
+    collect();
+    EXPECT_TRUE(last_heartbeat().in_flight.empty());
+}
+
+TEST_F(HeldUnitsTest, FilmIsNotHeldForEver) {
+    finish(1, First);
+    EXPECT_TRUE(take<SendFilm>().empty());
+    pass(seconds(6));
+    EXPECT_EQ(take<SendFilm>().size(), 1u);
+}
+
+TEST_F(HeldUnitsTest, FilmIsSentWhenTheOtherHalfIsCancelled) {
+    finish(1, First);
+    send(wire::CancelUnits{{UnitId{2}}});  // being rendered: it stops
+    EXPECT_EQ(take<SendFilm>().size(), 1u);
+}
+
+TEST_F(HeldUnitsTest, CancelledFilmIsNotSent) {
+    finish(1, First);
+    send(wire::CancelUnits{{UnitId{1}}});
+    EXPECT_EQ(only_release().unit, UnitId{1});
+    finish(2, Second);
+    const auto films = take<SendFilm>();
+    ASSERT_EQ(films.size(), 1u);
+    EXPECT_EQ(films[0].units, std::vector{UnitId{2}});
+    send(wire::CancelUnits{{UnitId{2}}});  // waits for the link
+    ASSERT_EQ(take<WithdrawFilm>().size(), 1u);
+    machine->film_withdrawn(UnitId{2});
+    collect();
+    EXPECT_EQ(only_release().unit, UnitId{2});
+}
+
+TEST_F(HeldUnitsTest, ANewRevisionDropsIt) {
+    finish(1, First);
+    ++view.revision;
+    send(wire::OpenView{view});
+    EXPECT_TRUE(take<SendFilm>().empty());
+    EXPECT_EQ(only_release().unit, UnitId{1});
 }
 
 TEST_F(MachineWorkTest, AFailingUnitIsReleasedWithTheCommandThatReproducesIt) {

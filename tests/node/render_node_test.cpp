@@ -49,8 +49,8 @@ struct RenderNodeTest : testing::Test {
             {.threads = 2, .isa = {}, .simulated_sample_cost = cost, .blobs = blobs});
     }
 
+    NodeSettings settings;
     void start(std::unique_ptr<backend::Backend> with) {
-        NodeSettings settings;
         settings.workers = 2;
         settings.liveness.interval = 50ms;
         settings.liveness.missed = 40;
@@ -156,7 +156,21 @@ TEST_F(RenderNodeTest, CancellingALongUnitFreesItsSlot) {
     master.expect_heartbeat([](const auto& beat) { return beat.free_slots == 4; });
 }
 
+TEST_F(RenderNodeTest, HandsBackWhatIsRenderedSoFar) {
+    start_synced(null_backend(100us));
+    work(1, {0, 20});
+    master.expect_heartbeat([](const auto& beat) { return beat.in_flight.size() == 1; });
+    std::this_thread::sleep_for(20ms);
+    drain.request_stop();
+    EXPECT_EQ(master.expect<wire::UnitReleased>().reason, ReleaseReason::Leaving);
+    (void)master.expect<wire::Goodbye>();
+    thread.join();
+    EXPECT_EQ(result.counters.units_done, 0u);
+    EXPECT_EQ(result.failure, "");
+}
+
 TEST_F(RenderNodeTest, DrainsAndReportsTheUnitsSent) {
+    settings.drain = Drain::Finish;
     start_synced(null_backend(20us));
     for (std::uint64_t id = 1; id <= 4; ++id) work(id, {0, 4});
     master.expect_heartbeat([](const auto& beat) { return beat.last_work_sequence == 4; });

@@ -189,7 +189,9 @@ std::vector<ControlMessage> view_and_display_messages() {
                    .summary = some_summary(),
                    .ended_at = -6}}},
             FetchJob{18, 2, {"ann", "night"}},
-            CancelJob{19, {"", "night"}}};
+            CancelJob{19, {"", "night"}},
+            FilmTaken{1 << 20},
+            ManageNode{20, "render-7", ManageNode::Order::Drain}};
 }
 
 std::vector<ControlMessage> control_messages() {
@@ -209,8 +211,8 @@ std::vector<BulkMessage> bulk_messages() {
             BlobRequest{blake2b({}), 7},
             BlobChunk{blake2b({}), 100, 10, std::vector<std::byte>(50)},
             BlobAbsent{blake2b({})},
-            FilmPart{UnitId{1}, ViewId{2}, 3, {4, 5}, 0, 2, 6, 7, film},
-            FilmPart{UnitId{1}, ViewId{2}, 3, {4, 5}, 1, 2, 6, 7, uneven},
+            FilmPart{UnitId{1}, ViewId{2}, 3, {4, 5}, 2, 6, 7, film},
+            FilmPart{UnitId{1}, ViewId{2}, 3, {4, 5}, 0, 6, 7, uneven},
             FrameTile{1, 2, 3, uneven},
             PictureChunk{1, 100, 10, std::vector<std::byte>(50)},
             OutputPicture{.frame = 7,
@@ -381,9 +383,57 @@ TEST(MalformedBytes, InvalidFilmIsRefused) {
     EXPECT_TRUE(
         refused([](FilmPart& part) { part.film.planes[1] = std::numeric_limits<float>::quiet_NaN(); }));
     EXPECT_TRUE(refused([](FilmPart& part) { part.film.block = {5, 2}; })) << "not aligned";
-    EXPECT_TRUE(refused([](FilmPart& part) { part.part = 2; })) << "the third of two parts";
     EXPECT_TRUE(refused([](FilmPart& part) { part.film.rect.x = -1; }));
     EXPECT_TRUE(refused([](FilmPart& part) { part.film.planes.pop_back(); }));
+}
+
+// Every plane of every channel, by its merge rule.
+TEST(MalformedBytes, ImpossibleValuesInAnyPlaneAreRefused) {
+    constexpr float Infinity = std::numeric_limits<float>::infinity();
+    constexpr float NotANumber = std::numeric_limits<float>::quiet_NaN();
+    for (const frame::ChannelInfo& info : frame::channel_table()) {
+        for (std::uint32_t plane = 0; plane < info.plane_count(); ++plane) {
+            const auto is_refused = [&](float value) {
+                FilmPart part{.unit = UnitId{1},
+                              .film = frame::FilmTile({0, 0, 2, 1}, {0, 0}, {info.channel})};
+                part.film.counts = {1, 1};
+                part.film.plane(plane)[1] = value;
+                return !decode_bulk(encode(BulkMessage(part)));
+            };
+            const bool is_mean = info.rule == frame::MergeRule::Moments && plane < info.components;
+            const bool is_m2 = info.rule == frame::MergeRule::Moments && !is_mean;
+            const bool is_minimum = info.rule == frame::MergeRule::Minimum ||
+                                    (info.rule == frame::MergeRule::Nearest && plane == 0);
+            const bool is_bits = info.rule == frame::MergeRule::Nearest && plane > 0;
+            EXPECT_FALSE(is_refused(1.0f)) << info.name << " " << plane;
+            EXPECT_EQ(is_refused(NotANumber), !is_bits) << info.name << " " << plane;
+            EXPECT_EQ(is_refused(Infinity), !is_bits && !is_minimum && !is_m2) << info.name << " " << plane;
+            EXPECT_EQ(is_refused(-Infinity), !is_bits) << info.name << " " << plane;
+            EXPECT_EQ(is_refused(-1.0f), is_m2) << info.name << " " << plane;
+        }
+    }
+}
+
+// The event loop decides by the header alone.
+TEST(MalformedBytes, TheHeadOfFilmIsReadWithoutItsPlanes) {
+    const FilmPart part = std::get<FilmPart>(bulk_messages()[4]);
+    const Bytes bytes = encode(BulkMessage(part));
+    const auto head = film_head(bytes);
+    ASSERT_TRUE(head);
+    EXPECT_EQ(head->unit, part.unit);
+    EXPECT_EQ(head->view, part.view);
+    EXPECT_EQ(head->revision, part.revision);
+    EXPECT_EQ(head->version, part.version);
+    EXPECT_EQ(head->rect, part.film.rect);
+    EXPECT_EQ(head->block, part.film.block);
+    EXPECT_FALSE(film_head(encode(bulk_messages()[0])));
+    for (std::size_t length = 0; length < bytes.size(); ++length)
+        (void)film_head(std::span(bytes).first(length));
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        Bytes damaged = bytes;
+        damaged[i] ^= std::byte{0xff};
+        (void)film_head(damaged);
+    }
 }
 
 // Sizes in a header are checked before memory is allocated for them.

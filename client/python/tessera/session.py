@@ -256,7 +256,13 @@ class Session(SessionNames):
         """The status of the cluster. Works without a scene."""
         request = control_pb2.Control()
         request.status_request.SetInParent()
-        return status_of(self.connection.ask("status", "status_reply", lambda: request, 60.0))
+        reply = self.connection.ask("status", "status_reply", lambda: request, 60.0)
+        page = reply
+        while page.more and page.status.nodes:  # hundreds of nodes come in pages
+            request.status_request.after = page.status.nodes[-1].summary.id
+            page = self.connection.ask("status", "status_reply", lambda: request, 60.0)
+            reply.status.nodes.extend(page.status.nodes)
+        return status_of(reply)
 
     def close_scene(self) -> None:
         """Closes the scene and its views for all members."""

@@ -64,6 +64,59 @@ TEST_F(SceneAuthorityTest, RejectsInvalidEditsAndKeepsTheScene) {
     EXPECT_EQ(authority.scene().objects().size(), 1u);
 }
 
+// What no back-end can flatten has to be refused here: a node cannot send an edit back.
+TEST_F(SceneAuthorityTest, RefusesAGraphThatBackEndsCannotHoldAndKeepsTheScene) {
+    const auto chain = [&](std::uint64_t depth) {
+        std::vector<Entry> entries{Create{id(0), Light{}}};
+        for (std::uint64_t i = 1; i <= depth; ++i) {
+            Transform link;
+            link.children = {id(i - 1)};
+            entries.push_back(Create{id(i), link});
+        }
+        Root root;
+        root.children = {id(depth)};
+        entries.push_back(Update{RootId, Fields<Root>(&Root::children).bits(), root});
+        return entries;
+    };
+    const Hash128 before = authority.scene().state_hash();
+    const auto too_deep = submit(chain(MaxDepth + 1));
+    EXPECT_FALSE(too_deep.accepted);
+    EXPECT_NE(too_deep.problems.at(0).find("nested deeper than 1024"), std::string::npos);
+    EXPECT_EQ(authority.scene().state_hash(), before);
+    EXPECT_TRUE(submit(chain(MaxDepth)).accepted);
+
+    // 24 levels of two transforms each that share both of the next level: 2^24 lights.
+    std::vector<Entry> doubling;
+    const std::uint64_t first = MaxDepth + 1;
+    for (std::uint64_t level = 0; level < 24; ++level) {
+        for (std::uint64_t side = 0; side < 2; ++side) {
+            Transform link;
+            link.children = level == 0 ? std::vector{id(0)}
+                                       : std::vector{id(first + 2 * level - 2), id(first + 2 * level - 1)};
+            doubling.push_back(Create{id(first + 2 * level + side), link});
+        }
+    }
+    Root root;
+    root.children = {id(first + 46), id(first + 47)};
+    doubling.push_back(Update{RootId, Fields<Root>(&Root::children).bits(), root});
+    const auto too_many = submit(doubling);
+    EXPECT_FALSE(too_many.accepted);
+    EXPECT_NE(too_many.problems.at(0).find("16000000 instances"), std::string::npos);
+}
+
+TEST_F(SceneAuthorityTest, RefusesABlobOfAnotherSizeThanItsReferenceSays) {
+    const BlobPtr blob = blobs->insert(std::as_bytes(std::span("123456789012", 12)));
+    Geometry geometry;
+    geometry.positions = {blob->hash(), 24};
+    const auto wrong = submit({Create{id(0), geometry}});
+    EXPECT_FALSE(wrong.accepted);
+    EXPECT_NE(wrong.problems.at(0).find("12 bytes, not 24"), std::string::npos) << wrong.problems.at(0);
+    geometry.positions.byte_size = 12;
+    geometry.indices = geometry.positions;
+    const auto right = submit({Create{id(0), geometry}});
+    EXPECT_TRUE(right.accepted) << right.problems.at(0);
+}
+
 TEST_F(SceneAuthorityTest, ClearRestoresTheInitialState) {
     const Hash128 empty = authority.scene().state_hash();
     blobs->insert(std::as_bytes(std::span("a blob that only the scene needed")));

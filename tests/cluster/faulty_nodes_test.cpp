@@ -1,0 +1,149 @@
+// Nodes that lie, fail, or send damaged film: they cost nothing but themselves.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+
+#include "mediator/frame/resolve.h"
+#include "tests/cluster/cluster_scene.h"
+#include "tests/cluster/hooked_backend.h"
+#include "tests/cluster/raw_peer.h"
+
+namespace tessera::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct FaultyNodes : testing::Test {
+    static session::ViewRequest small_request() {
+        session::ViewRequest request{.stop = {.spp = 16}, .wait_limit = 60s, .film = true};
+        request.view.width = 96;
+        request.view.height = 64;
+        request.view.window = {0, 0, 96, 64};
+        request.view.camera = view::perspective(glm::dmat4(1.0), 0.8, 1.5);
+        request.view.channels = {frame::Channel::Radiance, frame::Channel::Albedo, frame::Channel::Depth};
+        return request;
+    }
+    client::ViewResult render(const session::ViewRequest& request = small_request()) {
+        auto blobs = std::make_shared<scene::BlobStore>();
+        const auto session = cluster.batch(blobs);
+        client::ViewResult result = client::render(*session, request, {}, {});
+        status = session->status();
+        return result;
+    }
+    static std::string honest_hash() {
+        LoopbackCluster honest;
+        honest.add_node("null");
+        auto blobs = std::make_shared<scene::BlobStore>();
+        const auto session = honest.batch(blobs);
+        return to_hex(frame::film_hash(*client::render(*session, small_request(), {}, {}).film()));
+    }
+    bool was_logged(const std::string& text) const {
+        const std::vector<std::string> events = cluster.events();
+        return std::ranges::any_of(
+            events, [&](const std::string& event) { return event.find(text) != std::string::npos; });
+    }
+    std::string quarantine(const std::string& name) const {
+        for (const session::NodeStatus& node : status.nodes) {
+            if (node.summary.name == name) return node.quarantine;
+        }
+        return "no such node";
+    }
+    // Every unit is answered for exactly once.
+    void expect_balanced() const {
+        const session::UnitCounts& units = status.units;
+        EXPECT_EQ(units.issued + units.reissued,
+                  units.merged + units.duplicate + units.cancelled + units.refused + units.lost);
+    }
+
+    LoopbackCluster cluster;
+    session::ClusterStatus status;
+};
+
+TEST_F(FaultyNodes, FilmThatWasNeverAskedForChangesNoPicture) {
+    cluster.add_node(hooked([](const auto&, auto&) {}, 5us));
+    std::atomic<bool> done = false;
+    std::jthread forger([&] {
+        RawPeer peer(cluster.channel(net::Role::Node));
+        wire::Hello hello{.peer = wire::PeerKind::Node, .name = "forger"};
+        hello.channels = small_request().view.channels;
+        hello.renderers = view::TracingRenderers;
+        hello.kind = "null";
+        hello.concurrent_units = 1;
+        peer.send(hello);
+        if (!peer.wait_for<wire::Welcome>()) return;
+        peer.send(wire::BulkHello{peer.received<wire::Welcome>()->token});
+        while (!done) {
+            for (std::uint64_t id = 1; id <= 64; ++id) {
+                wire::FilmPart film{.unit = UnitId{id}, .view = ViewId{id}, .revision = 1, .version = {}};
+                film.film = frame::FilmTile({0, 0, 32, 32}, {0, 5}, small_request().view.channels);
+                std::ranges::fill(film.film.planes, 1000.0f);
+                peer.send(wire::BulkMessage(std::move(film)));
+            }
+            peer.poll();
+        }
+    });
+    std::this_thread::sleep_for(50ms);
+    const client::ViewResult result = render();
+    done = true;
+    EXPECT_NE(quarantine("forger").find("it sent film"), std::string::npos) << quarantine("forger");
+    EXPECT_GE(status.dropped_messages, 3u);
+    EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
+    EXPECT_EQ(to_hex(frame::film_hash(*result.film())), honest_hash());
+    expect_balanced();
+}
+
+TEST_F(FaultyNodes, ANodeThatFailsEveryUnitIsQuarantinedAndTheJobFinishes) {
+    std::atomic<int> failures = 0;
+    cluster.add_node(hooked([&](const auto&, auto&) {
+        ++failures;
+        throw Error(ErrorCode::Unavailable, "the device is lost");
+    }));
+    for (int i = 0; i < 2; ++i) cluster.add_node(hooked([](const auto&, auto&) {}, 2us));
+    session::ViewRequest request = small_request();
+    request.min_nodes = 3;
+    const client::ViewResult result = render(request);
+    EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
+    EXPECT_EQ(to_hex(frame::film_hash(*result.film())), honest_hash());
+    EXPECT_GT(failures, 0);
+    EXPECT_LE(failures, 12) << "it gets no more work";
+    EXPECT_NE(quarantine("node-1").find("the device is lost"), std::string::npos) << quarantine("node-1");
+    EXPECT_TRUE(was_logged("tessera node release node-1"));
+    expect_balanced();
+}
+
+TEST_F(FaultyNodes, FilmThatIsNotFiniteIsRefusedAndRenderedElsewhere) {
+    for (const float poison :
+         {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        cluster.add_node(hooked([poison](const auto&, backend::RenderResult& result) {
+            for (frame::FilmTile& block : result.blocks) block.planes[block.pixel_count()] = poison;
+        }));
+    }
+    cluster.add_node("null");
+    const client::ViewResult result = render();
+    EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
+    EXPECT_EQ(to_hex(frame::film_hash(*result.film())), honest_hash());
+    expect_balanced();
+}
+
+TEST_F(FaultyNodes, ATileThatNoNodeCanRenderIsLeftOutAndNamed) {
+    for (int i = 0; i < 3; ++i) {
+        cluster.add_node(hooked([](const view::WorkUnit& unit, auto&) {
+            if (unit.tile.x == 0 && unit.tile.y == 0) throw Error(ErrorCode::Internal, "a bad shader");
+        }));
+    }
+    const client::ViewResult result = render();
+    EXPECT_EQ(result.summary.outcome, session::Outcome::Incomplete);
+    ASSERT_EQ(result.summary.failed_tiles.size(), 1u);
+    const session::FailedTile& failed = result.summary.failed_tiles[0];
+    EXPECT_EQ(failed.rect.x, 0);
+    EXPECT_EQ(failed.rect.y, 0);
+    EXPECT_NE(result.summary.message.find("a bad shader"), std::string::npos) << result.summary.message;
+    for (int i = 1; i <= 3; ++i)
+        EXPECT_EQ(quarantine("node-" + std::to_string(i)), "") << "the samples are to blame, not the nodes";
+    expect_balanced();
+}
+
+}  // namespace
+}  // namespace tessera::test
