@@ -27,6 +27,7 @@ their choices in bash.
 | 0 | done |
 | 1 | `compare`: the pictures differ more than allowed |
 | 2 | bad input: a file is missing, damaged or of the wrong kind; no output was written |
+| 3 | the picture was written, but some of its tiles could not be rendered by any node; the message has the command that replays one |
 | 64 | wrong options; the message names the nearest valid one |
 | 65 | `edit`: an error in a script; nothing was changed |
 | 69 | unavailable: no master answers, no nodes came, a back-end cannot start |

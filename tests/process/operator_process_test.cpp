@@ -1,0 +1,121 @@
+// What operators do to processes: signals, and changes of the allow-list.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/process/real_cluster.h"
+
+namespace tessera::test {
+namespace {
+
+using nlohmann::json;
+using namespace std::chrono_literals;
+
+const std::vector<std::string> NullNode{"--backend", "null", "--simulate-cost", "20us"};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+TEST(Operators, AWrongAllowListLeavesTheOldOneInForce) {
+    RealCluster cluster;
+    (void)cluster.status();  // it has started
+    const std::filesystem::path list = std::filesystem::path(cluster.keys()) / "allowed.keys";
+    std::string good;
+    {
+        std::ifstream file(list);
+        good.assign(std::istreambuf_iterator<char>(file), {});
+    }
+    const auto reload = [&] {
+        cluster.master().signal(SIGHUP);
+        std::this_thread::sleep_for(200ms);
+        EXPECT_EQ(cluster.status()["sessions"].get<int>(), 1) << "the master lives, and the key is good";
+    };
+    std::ofstream(list, std::ios::app) << "this is no key\n";
+    reload();
+    std::ofstream(list, std::ios::trunc) << std::string(3000, '\xff');
+    reload();
+    std::filesystem::remove(list);
+    reload();
+    std::filesystem::create_directory(list);
+    reload();
+    std::filesystem::remove(list);
+    std::ofstream(list) << good;
+    cluster.master().signal(SIGHUP);
+    EXPECT_EQ(cluster.status()["caught_exceptions"].get<int>(), 4);
+    const std::string log = cluster.master().err();
+    EXPECT_NE(log.find("allowed.keys"), std::string::npos) << log;
+    EXPECT_NE(log.find("the allow-list was read again"), std::string::npos) << log;
+}
+
+TEST(Operators, SignalsOfBatchSystemsAreHarmless) {
+    RealCluster cluster;
+    ChildProcess node = cluster.start_node("a", NullNode);
+    ASSERT_TRUE(cluster.wait_for([](const json& status) { return status["nodes"].size() == 1; }));
+    for (const int signal : {SIGUSR1, SIGUSR2}) {
+        node.signal(signal);
+        cluster.master().signal(signal);
+    }
+    std::this_thread::sleep_for(200ms);
+    EXPECT_EQ(cluster.status()["nodes"].size(), 1u);
+    node.signal(SIGTERM);
+    EXPECT_EQ(node.wait(10s).value_or(-1), 0) << "it still listens: " << node.err();
+}
+
+// A unit of this node takes minutes: it hands back what it has, or leaves with nothing.
+TEST(Operators, ANodeLeavesWithinSecondsAndAtOnceAtTheSecondSignal) {
+    RealCluster cluster;
+    for (const int signals : {1, 2}) {
+        ChildProcess node = cluster.start_node("slow", {"--backend", "null", "--simulate-cost", "2ms"});
+        ChildProcess render =
+            cluster.start_render("frame", scene_file("still.glb"), {"--size", "320x240", "--spp", "4096"});
+        ASSERT_TRUE(cluster.wait_for([](const json& status) {
+            return status["nodes"].size() == 1 && status["nodes"][0]["units_in_flight"].get<int>() > 0;
+        }));
+        const auto start = std::chrono::steady_clock::now();
+        for (int i = 0; i < signals; ++i) {
+            node.signal(SIGTERM);
+            std::this_thread::sleep_for(40ms);
+        }
+        EXPECT_TRUE(node.wait(20s).has_value());
+        // Generous, since other tests run at the same time; what is measured is 3 s and 0.1 s.
+        EXPECT_LT(seconds_since(start), signals == 1 ? 6.0 : 2.0);
+        render.signal(SIGINT);
+        EXPECT_EQ(render.wait(20s).value_or(-1), 130) << render.err();
+        ASSERT_TRUE(cluster.wait_for([](const json& status) { return status["nodes"].empty(); }));
+    }
+}
+
+TEST(Operators, ANodeThatStandsStillForTenSecondsChangesNothing) {
+    RealCluster cluster;
+    ChildProcess a = cluster.start_node("a", NullNode), b = cluster.start_node("b", NullNode);
+    const std::vector<std::string> frame{"--size", "160x120",      "--spp", "16",    "--seed",
+                                         "5",      "--wait-nodes", "2:60",  "--json"};
+    ChildProcess render = cluster.start_render("frame", scene_file("still.glb"), frame);
+    ASSERT_TRUE(cluster.wait_for([](const json& status) {
+        for (const json& node : status["nodes"]) {
+            if (node["name"] == "b" && node["units_in_flight"].get<int>() > 0) return true;
+        }
+        return false;
+    }));
+    b.signal(SIGSTOP);
+    EXPECT_EQ(render.wait(std::chrono::minutes(2)).value_or(-1), 0) << render.err();
+    std::this_thread::sleep_for(10s);
+    b.signal(SIGCONT);
+    const json first = json::parse(render.out());
+    ASSERT_TRUE(cluster.wait_for([](const json& status) { return status["nodes"].size() == 2; }))
+        << "it comes back";
+    const json again =
+        cluster.render("again", scene_file("still.glb"), {"--size", "160x120", "--spp", "16", "--seed", "5"});
+    EXPECT_EQ(first["film_hash"], again["film_hash"]);
+    const json& units = first["units"];
+    EXPECT_EQ(units["issued"].get<int>() + units["reissued"].get<int>(),
+              units["merged"].get<int>() + units["duplicate"].get<int>() + units["cancelled"].get<int>() +
+                  units["refused"].get<int>() + units["lost"].get<int>())
+        << units.dump();
+}
+
+}  // namespace
+}  // namespace tessera::test
