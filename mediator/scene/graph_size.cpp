@@ -51,7 +51,7 @@ Expected<GraphSize::Totals> GraphSize::below(const Scene& scene, const std::vect
         if (std::holds_alternative<Geometry>(*object) || std::holds_alternative<Light>(*object)) {
             sum.placements += 1;
         } else if (const auto* child = std::get_if<Transform>(object)) {
-            const Expected<Totals> totals = transform(scene, id, *child, level + 1);
+            Expected<Totals> totals = transform(scene, id, *child, level + 1);
             if (!totals) return totals;
             sum.placements += totals->placements;
             sum.path_ids += totals->path_ids + totals->placements;
@@ -72,7 +72,7 @@ Expected<GraphSize::Totals> GraphSize::transform(const Scene& scene, ObjectId id
                                                     transform.name +
                                                     "' contains itself; remove one link of the cycle");
     }
-    const Expected<Totals> totals = below(scene, transform.children, level);
+    Expected<Totals> totals = below(scene, transform.children, level);
     if (totals) {
         known_[id] = *totals;
     } else {

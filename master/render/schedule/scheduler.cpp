@@ -274,7 +274,7 @@ std::uint32_t Scheduler::tiles_without_samples() const {
 }
 
 std::vector<Cancellation> Scheduler::revise(std::uint64_t revision) {
-    const std::vector<Cancellation> cancellations = ledger_.end_all();
+    std::vector<Cancellation> cancellations = ledger_.end_all();
     collect_returned();
     revision_ = revision;
     return cancellations;

@@ -226,7 +226,7 @@ void UnitLedger::node_gone(NodeId node, std::uint32_t rendering, const std::stri
 }
 
 std::vector<Cancellation> UnitLedger::end_all() {
-    const std::vector<Cancellation> all = holders();
+    std::vector<Cancellation> all = holders();
     for (const Cancellation& holder : all) end(holder.unit, holder.node, Fate::Cancelled);
     former_.clear();
     for (auto& units : former_of_tile_) units.clear();
