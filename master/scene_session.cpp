@@ -158,7 +158,9 @@ void SceneSession::node_refused(NodeRecord& node, const wire::SceneRefused& refu
 }
 
 void SceneSession::withdraw_unbuildable(const std::string& reason, TimePoint now) {
-    const auto withdrawn = authority_.withdraw_after(built_transactions_, {.name = "the master"});
+    // Later edits have not been tried; one of them may be the remedy.
+    const auto withdrawn =
+        authority_.withdraw(built_transactions_, published_transactions_, {.name = "the master"});
     if (withdrawn.empty()) return;
     for (const SceneAuthority::Withdrawn& edit : withdrawn) {
         const std::string text = "edit " + std::to_string(edit.transaction) + " (" + edit.text +

@@ -136,8 +136,7 @@ void print_table(const session::ClusterStatus& status) {
     if (status.dropped_messages + status.contradictions + status.caught_exceptions > 0) {
         std::printf(
             "%llu messages dropped, %llu contradictions between nodes, %llu internal errors: see the "
-            "master's "
-            "log\n",
+            "master's log\n",
             count(status.dropped_messages), count(status.contradictions), count(status.caught_exceptions));
     }
     if (const session::SceneStatus& live = status.scene; !live.title.empty()) {

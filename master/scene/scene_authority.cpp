@@ -182,9 +182,10 @@ SceneAuthority::Answer SceneAuthority::undo(EditorRecord& editor, const scene::E
     return carry_out(editor, edit, request);
 }
 
-std::vector<SceneAuthority::Withdrawn> SceneAuthority::withdraw_after(std::uint64_t last, const Editor& by) {
+std::vector<SceneAuthority::Withdrawn> SceneAuthority::withdraw(std::uint64_t built, std::uint64_t published,
+                                                                const Editor& by) {
     std::vector<Withdrawn> withdrawn;
-    for (std::uint64_t number = history_.last(); number > last; --number) {
+    for (std::uint64_t number = published; number > built; --number) {
         const Transaction* target = history_.find(number);
         if (target == nullptr || target->undone_by != 0) continue;
         EditorRecord* editor = editors_.by_number(target->editor);

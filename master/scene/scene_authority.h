@@ -54,14 +54,14 @@ class SceneAuthority {
     // Blobs that the edit needs and that are not in the store.
     std::vector<scene::BlobRef> missing_blobs(const scene::Edit& edit) const;
 
-    // Undoes, youngest first, the transactions after `last` that are in force: nodes cannot build them. An undo that is
-    // recorded and listed like one by their author; `by` names who asked for it.
+    // Undoes, youngest first, the transactions after `built` up to `published` that are in force: nodes cannot build
+    // them. Each undo is recorded and listed like one by their author; `by` names who asked for it.
     struct Withdrawn {
         std::uint64_t transaction = 0;
         SessionId author;  // 0: not connected
         std::string text;  // what it was
     };
-    std::vector<Withdrawn> withdraw_after(std::uint64_t last, const Editor& by);
+    std::vector<Withdrawn> withdraw(std::uint64_t built, std::uint64_t published, const Editor& by);
 
     // If the camera has left the neighbourhood of the render origin's cell: moves the origin to the camera's
     // cell, and publishes.
