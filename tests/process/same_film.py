@@ -16,7 +16,6 @@ import argparse
 import hashlib
 import json
 import pathlib
-import socket
 import subprocess
 import sys
 import tempfile
@@ -25,6 +24,8 @@ import zlib
 from dataclasses import dataclass, field
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "python"))
+from ports import free_port  # noqa: E402
 SCENES = ROOT / "tests" / "scenes"
 FILTERS = ["bilateral", "eaw", "fdf", "gauss", "guided", "nfor", "nlm", "none", "pixel", "psvgf", "statmc"]
 PATIENCE = 600  # seconds a single picture may take on a busy machine
@@ -127,13 +128,30 @@ class Cluster:
 
     def __enter__(self) -> "Cluster":
         finished([str(self.programs / "tessera"), "keys", self.keys()])
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            self.endpoint = f"tcp://127.0.0.1:{probe.getsockname()[1]}"
-        self.start("tessera-master", "--listen", self.endpoint, "--keys", self.keys(), "--heartbeat", "0.25")
-        for name in ("a", "b"):
-            self.start("tessera-node", "--master", self.endpoint, "--keys", self.keys(), "--name", name, "--threads", "1")
+        try:
+            self.start_master()
+            for name in ("a", "b"):
+                self.start("tessera-node", "--master", self.endpoint, "--keys", self.keys(), "--name", name, "--threads", "1")
+        except BaseException:
+            self.__exit__()
+            raise
         return self
+
+    def start_master(self) -> None:
+        """Another process may take a port between its choice and its use, so a master that ends is started at another one."""
+        log = self.folder / "tessera-master-0.log"
+        for _ in range(5):
+            self.endpoint = f"tcp://127.0.0.1:{free_port()}"
+            master = self.start("tessera-master", "--listen", self.endpoint, "--keys", self.keys(), "--heartbeat", "0.25")
+            until = time.monotonic() + PATIENCE
+            while master.poll() is None and time.monotonic() < until:
+                if "listening on" in log.read_text(encoding="utf-8"):
+                    return
+                time.sleep(0.02)
+            self.children.remove(master)
+            master.kill()
+            master.wait()
+        raise RuntimeError(f"the master does not start:\n{log.read_text(encoding='utf-8')}")
 
     def __exit__(self, *_: object) -> None:
         for child in self.children:
