@@ -17,7 +17,7 @@ from ports import free_port  # noqa: E402
 
 PATIENCE = 240  # seconds a whole page may take on a busy machine
 # Options of scripts, CMake, CTest and others that the documents name.
-FOREIGN = {"--ci", "--fix", "--live", "--long", "--once", "--preset", "--wall", "--scope"}
+FOREIGN = {"--ci", "--docs", "--fix", "--live", "--long", "--once", "--preset", "--wall", "--scope"}
 
 
 def blocks(page: pathlib.Path, language: str) -> list[str]:
