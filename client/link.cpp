@@ -30,7 +30,7 @@ Link::Link(std::unique_ptr<net::Channel> channel, std::function<void()> reconnec
       clock_(clock),
       settings_(settings),
       liveness_(liveness_settings(settings.heartbeat, 3), clock.now()),
-      last_heard_(clock.now()),
+      lost_since_(clock.now()),
       thread_([this](std::stop_token stop) { run(stop); }) {}
 
 Link::~Link() {
@@ -128,7 +128,7 @@ bool Link::step(std::stop_token stop) {
 
 void Link::receive(const net::Message& message, TimePoint now) {
     liveness_.on_message(now);
-    last_heard_ = now;
+    lost_since_ = now;
     // Malformed messages count as lost; calls that wait for them have deadlines.
     if (message.link == net::Link::Control) {
         if (auto decoded = wire::decode_control(message.bytes)) control(std::move(*decoded), now);
@@ -222,7 +222,7 @@ void Link::beat(TimePoint now) {
 void Link::watch(TimePoint now) {
     const bool never_joined = number_ == 0;
     if (state_ != State::Joined &&
-        now - last_heard_ >= (never_joined ? settings_.connect_limit : settings_.lost_limit)) {
+        now - lost_since_ >= (never_joined ? settings_.connect_limit : settings_.lost_limit)) {
         return fail(Error(ErrorCode::Unavailable,
                           goodbye_ ? "the master left and did not come back: " + *goodbye_
                           : never_joined
@@ -245,6 +245,8 @@ void Link::watch(TimePoint now) {
 
 void Link::enter_away(TimePoint now) {
     outbox_.clear();  // belongs to the old sockets
+    // A computer that slept has been silent for long, but begins to search only now.
+    if (state_ == State::Joined) lost_since_ = now;
     state_ = State::Away;
     if (number_ != 0 && !is_away_.exchange(true)) deliver(Interrupted{});
     return_at_ = now + liveness_.next_backoff();

@@ -87,7 +87,8 @@ class Link {
     net::Liveness liveness_;
     std::deque<Outgoing> outbox_;
     std::uint64_t number_ = 0, token_ = 0;  // of the latest welcome
-    TimePoint last_heard_, return_at_{}, last_greeting_{};
+    // Reconnecting since, or the latest message while connected or after that.
+    TimePoint lost_since_, return_at_{}, last_greeting_{};
     std::int64_t master_sent_at_ = 0;
     TimePoint master_heard_at_{};
 

@@ -92,9 +92,10 @@ void Session::Implementation::take(const wire::SceneJoined& welcome) {
     }
     // A live scene may contain edits of others; an exclusive one contains only ours.
     if (join_request.exclusive && welcome.last_sequence < last_answered) {
-        throw Error(ErrorCode::Unavailable,
-                    "the master has lost this session's scene (it was restarted, or the connection was lost "
-                    "for too long): start again");
+        throw Error(
+            ErrorCode::Unavailable,
+            "the master has lost this session's scene (it was restarted, or the connection was lost "
+            "for too long): start again; a picture that was finished meanwhile is listed by: tessera jobs");
     }
     joined = welcome;
     const bool again = state == State::Joining && last_sequence > 0;

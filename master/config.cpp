@@ -22,6 +22,10 @@ std::optional<int> parse_options(int argc, const char* const* argv, MasterOption
                 "master started with it resumes the session",
                 options.session);
     line.option("--checkpoint", "seconds between checkpoints of the session", options.checkpoint_seconds);
+    line.option("--orphan",
+                "seconds a frame is rendered on, and its picture kept, after its client was lost "
+                "(jobs of render --detach: until they are removed)",
+                options.orphan_seconds);
     line.choice("--log-level", "log verbosity", options.log.level, cli::log_levels());
     line.option("--log-file", "write the log there instead of standard error", options.log.file);
     line.examples({"tessera keys ~/.tessera && tessera-master --keys ~/.tessera",
@@ -45,6 +49,8 @@ std::optional<int> parse_options(int argc, const char* const* argv, MasterOption
     if (!(options.checkpoint_seconds >= 0.1 && options.checkpoint_seconds <= 3600.0)) {
         return usage("--checkpoint must be between 0.1 and 3600 seconds");
     }
+    if (!(options.orphan_seconds >= 0.0 && options.orphan_seconds <= 1e6))
+        return usage("--orphan must be between 0 and 1000000 seconds");
     return std::nullopt;
 }
 

@@ -17,6 +17,7 @@ struct MasterOptions {
     std::uint64_t blob_quota_mib = 16384;  // per session
     std::string session;                   // folder; "" = live scenes end with the master
     double checkpoint_seconds = 10.0;
+    double orphan_seconds = 600.0;
     cli::LogSettings log{.program = "tessera-master"};
 };
 

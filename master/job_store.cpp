@@ -113,6 +113,26 @@ bool JobStore::remove(const session::JobName& job) {
     return true;
 }
 
+std::string JobStore::unused_name(const session::JobName& job) const {
+    session::JobName candidate = job;
+    for (int number = 2; jobs_.contains(candidate); ++number)
+        candidate.name = job.name + " (" + std::to_string(number) + ")";
+    return candidate.name;
+}
+
+void JobStore::remove_expired(std::int64_t now) {
+    std::vector<session::JobName> expired;
+    for (const auto& [name, entry] : jobs_) {
+        const std::int64_t until = entry.job.status.kept_until;
+        if (until != 0 && until <= now) expired.push_back(name);
+    }
+    for (const session::JobName& job : expired) {
+        events_({wire::Severity::Info,
+                 "job '" + job.name + "' of " + job.user + " is removed: no client fetched it in time"});
+        (void)remove(job);
+    }
+}
+
 std::vector<session::JobName> JobStore::take_written() {
     const std::scoped_lock lock(mutex_);
     return std::exchange(written_, {});

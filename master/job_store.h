@@ -35,6 +35,9 @@ class JobStore {
     void add(wire::StoredJob&& job, std::shared_ptr<const std::vector<std::byte>> picture);
     const Entry* find(const session::JobName& job) const;
     bool remove(const session::JobName& job);  // false: no such job
+    // The job's name, or with a number appended if a job of that name is stored.
+    std::string unused_name(const session::JobName& job) const;
+    void remove_expired(std::int64_t now);  // ns since 1970
     // Jobs whose files were written since the last call.
     std::vector<session::JobName> take_written();
     std::vector<const Entry*> all() const;  // oldest first

@@ -38,6 +38,8 @@ int serve(const master::MasterOptions& options) {
     settings.liveness.interval =
         std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options.heartbeat_seconds));
     settings.session_folder = options.session;
+    settings.views.orphan_limit =
+        std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options.orphan_seconds));
     settings.checkpoint_interval =
         std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options.checkpoint_seconds));
     settings.blob_limits.bytes_total = options.blob_quota_mib << 20;

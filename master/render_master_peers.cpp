@@ -51,7 +51,7 @@ void RenderMaster::from_client(SessionRecord& session, wire::ControlMessage& mes
     } else if (const auto* set = std::get_if<wire::SetViewFilter>(&message)) {
         scene_.handle(session, *set, now);
     } else if (const auto* jobs = std::get_if<wire::ReadJobs>(&message)) {
-        scene_.handle(session, *jobs);
+        scene_.handle(session, *jobs, now);
     } else if (const auto* fetched = std::get_if<wire::FetchJob>(&message)) {
         scene_.handle(session, *fetched);
     } else if (const auto* cancelled = std::get_if<wire::CancelJob>(&message)) {

@@ -15,7 +15,7 @@ constexpr std::size_t MaxNameLength = 64;
 
 SceneSession::SceneSession(std::uint64_t epoch, const ViewSettings& settings, const MasterServices& services)
     : services_(services),
-      owner_timeout_(settings.orphan_patience),
+      owner_timeout_(settings.orphan_limit),
       authority_(epoch, services.blobs),
       distributor_(authority_, *services.blobs, services.outbox, services.events),
       views_(settings, services.render, services.sessions, services.outbox, services.events),
@@ -114,13 +114,16 @@ void SceneSession::left(SessionId session, Views::DisconnectReason reason, TimeP
     authority_.forget(session);
     members_.erase(member);
     std::erase_if(reads_, [&](const WaitingRead& read) { return read.session == session; });
+    if (reason == Views::DisconnectReason::Timeout && members_.empty()) owner_missing_since_ = now;
     close_when_left(now);
 }
 
-// An exclusive scene is closed when its owner leaves, unless jobs continue. A recovered one is kept for a while.
+// An exclusive scene is closed when its owner leaves, unless jobs continue. One that was recovered, or whose owner was
+// lost, waits for its owner for a while, but not once it only keeps others waiting.
 void SceneSession::close_when_left(TimePoint now) {
     if (!open_ || !is_exclusive() || !members_.empty() || views_.has_jobs()) return;
-    if (!owner_missing_since_ || now - *owner_missing_since_ > owner_timeout_) close(now);
+    const bool waits = owner_missing_since_ && now - *owner_missing_since_ <= owner_timeout_;
+    if (!waits || !services_.sessions.queue().empty()) close(now);
 }
 
 void SceneSession::edited(const SessionRecord& session, const scene::Edit& edit, const EditAnswer& answer,
@@ -376,7 +379,7 @@ void SceneSession::tick(TimePoint now) {
     views_.advance(now);
     display_.tick(now);
     views_.deal(now);
-    store_finished_jobs();
+    store_finished_jobs(now);
     for (const FirstPicture& first : views_.take_first_pictures()) traces_.merged(first.version, first.at);
 }
 

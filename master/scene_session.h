@@ -89,7 +89,7 @@ class SceneSession {
     void handle(SessionRecord& session, const wire::SetViewFilter& request, TimePoint now);
 
     // Jobs of this scene, and finished jobs of any scene; for any client.
-    void handle(SessionRecord& session, const wire::ReadJobs& request);
+    void handle(SessionRecord& session, const wire::ReadJobs& request, TimePoint now);
     void handle(SessionRecord& session, const wire::FetchJob& request);
     void handle(SessionRecord& session, const wire::CancelJob& request);
 
@@ -143,7 +143,7 @@ class SceneSession {
     std::string submission_problem(const SessionRecord& session, const session::ViewRequest& wanted) const;
     void record_job(const std::string& name);
     void add_new_jobs(std::vector<wire::SavedView>& saved) const;
-    void store_finished_jobs();
+    void store_finished_jobs(TimePoint now);
     void withdraw_unbuildable(const std::string& reason, TimePoint now);
     void close_when_left(TimePoint now);
     const ViewState* job_view(const session::JobName& job) const;

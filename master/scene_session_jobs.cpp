@@ -59,11 +59,14 @@ void SceneSession::add_new_jobs(std::vector<wire::SavedView>& saved) const {
     }
 }
 
-void SceneSession::store_finished_jobs() {
+void SceneSession::store_finished_jobs(TimePoint now) {
     for (Delivery::Ended& ended : views_.take_ended_jobs()) {
         const ViewState* view = views_.table().find(ended.view);
-        if (view == nullptr) continue;
-        const session::JobName job{view->owner.user, view->name};
+        if (view == nullptr || !views_.is_job(ended.view)) continue;  // its client is back
+        session::JobName job{view->owner.user, view->name};
+        const auto orphan_time = views_.orphan_time(*view, now);
+        // Names that clients did not choose repeat.
+        if (orphan_time) job.name = services_.jobs.unused_name(job);
         services_.events({wire::Severity::Info, "job '" + job.name + "' of " + job.user + " has ended: " +
                                                     std::string(enumerator_name(ended.summary.outcome))});
         services_.jobs.add({.status = {.job = job,
@@ -71,13 +74,20 @@ void SceneSession::store_finished_jobs() {
                                        .has_ended = true,
                                        .progress = {},
                                        .summary = std::move(ended.summary),
-                                       .ended_at = since_1970()},
+                                       .ended_at = since_1970(),
+                                       .kept_until = orphan_time ? since_1970() + orphan_time->count() : 0},
                             .width = ended.header.width,
                             .height = ended.header.height,
                             .components = ended.header.components},
                            std::move(ended.picture));
-        views_.release(ended.view);
+        // The lost client may still return for its film.
+        if (orphan_time) {
+            views_.stop_keeping(ended.view);
+        } else {
+            views_.release(ended.view);
+        }
     }
+    services_.jobs.remove_expired(since_1970());
     // From now on a restarted master need not render them again.
     for (const session::JobName& job : services_.jobs.take_written()) {
         if (journal_) journal_->job_ended(job);
@@ -91,17 +101,19 @@ const ViewState* SceneSession::job_view(const session::JobName& job) const {
     return nullptr;
 }
 
-void SceneSession::handle(SessionRecord& session, const wire::ReadJobs& request) {
+void SceneSession::handle(SessionRecord& session, const wire::ReadJobs& request, TimePoint now) {
     wire::Jobs answer{.request = request.request, .jobs = {}};
     for (const JobStore::Entry* stored : services_.jobs.all()) {
         if (may_see(session, stored->job.status.job.user)) answer.jobs.push_back(stored->job.status);
     }
     for (const auto& [id, view] : views_.table().all()) {
         if (!views_.is_job(id) || !may_see(session, view.owner.user)) continue;
+        const auto orphan_time = views_.orphan_time(view, now);
         answer.jobs.push_back({.job = {view.owner.user, view.name},
                                .scene = title(),
                                .progress = views_.progress(view),
-                               .summary = {}});
+                               .summary = {},
+                               .kept_until = orphan_time ? since_1970() + orphan_time->count() : 0});
     }
     net::Bytes message = wire::encode(wire::ControlMessage(answer));
     while (!wire::fits_control(message)) {  // drop the oldest

@@ -44,7 +44,8 @@ Json job_value(const session::JobStatus& job) {
                {"ended", job.has_ended},
                {"done", progress_fraction(job)},
                {"samples", job.progress.samples},
-               {"phase", job.has_ended ? Json() : Json(enumerator_name(job.progress.phase))}};
+               {"phase", job.has_ended ? Json() : Json(enumerator_name(job.progress.phase))},
+               {"kept_until", job.kept_until == 0 ? Json() : Json(double(job.kept_until) * 1e-9)}};
     if (!job.has_ended) return value;
     const session::ViewSummary& summary = job.summary;
     value.update({{"outcome", enumerator_name(summary.outcome)},
@@ -64,17 +65,26 @@ std::string display_name(std::string_view enumerator) {
     return text;
 }
 
-std::string state_of(const session::JobStatus& job) {
-    if (!job.has_ended)
-        return formatted("%3.0f %%  %s", 100.0 * progress_fraction(job),
-                         display_name(enumerator_name(job.progress.phase)).c_str());
-    const auto seconds = static_cast<std::time_t>(job.ended_at / 1'000'000'000);
+// `since_1970` in ns.
+std::string local_time(std::int64_t since_1970) {
+    const auto seconds = static_cast<std::time_t>(since_1970 / 1'000'000'000);
     std::tm local{};
     ::localtime_r(&seconds, &local);
     char when[32];
     std::strftime(when, sizeof when, "%Y-%m-%d %H:%M", &local);
-    std::string text = display_name(enumerator_name(job.summary.outcome)) + " at " + when;
-    if (!job.summary.message.empty()) text += ": " + job.summary.message;
+    return when;
+}
+
+std::string state_of(const session::JobStatus& job) {
+    std::string text;
+    if (job.has_ended) {
+        text = display_name(enumerator_name(job.summary.outcome)) + " at " + local_time(job.ended_at);
+        if (!job.summary.message.empty()) text += ": " + job.summary.message;
+    } else {
+        text = formatted("%3.0f %%  %s", 100.0 * progress_fraction(job),
+                         display_name(enumerator_name(job.progress.phase)).c_str());
+    }
+    if (job.kept_until != 0) text += "; its client was lost, kept until " + local_time(job.kept_until);
     return text;
 }
 
@@ -195,8 +205,9 @@ Command jobs_command(cli::CommandLine& program) {
 
 Command fetch_command(cli::CommandLine& program) {
     const auto options = std::make_shared<FetchOptions>();
-    cli::CommandLine& line =
-        program.command(FetchName, "Fetch the picture of a job that was submitted with render --detach.");
+    cli::CommandLine& line = program.command(
+        FetchName,
+        "Fetch the picture of a job that was submitted with render --detach, or whose client was lost.");
     line.positional("NAME", "name of the job; tessera jobs lists them", options->name);
     line.option("-o,--output", "file to write (default: NAME.png, .jpg or .exr, as requested at submission)",
                 options->output);

@@ -14,6 +14,7 @@ struct ViewSettings {
     Duration overdue_patience =
         std::chrono::seconds(5);  // a unit that the node does not hold and whose film has not arrived: lost
     Duration orphan_patience = std::chrono::seconds(60);  // how long a view waits for an owner that timed out
+    Duration orphan_limit = std::chrono::minutes(10);     // the same of a frame whose end its owner waits for
     Duration frame_interval = std::chrono::milliseconds(33);  // between pictures of the same pass
     Duration progress_interval = std::chrono::milliseconds(100);
     Duration stop_grace = std::chrono::seconds(2);  // for film of cancelled units

@@ -23,6 +23,15 @@ Delivery::FrameFormat format_of(const session::ViewRequest& request) {
     return {request.picture, request.film, request.frames, request.display_transform};
 }
 
+// Whoever fetches the picture gets a file, not the pixels or the film that its lost client would have written one from.
+Delivery::FrameFormat format_of_orphan(const session::ViewRequest& request) {
+    Delivery::FrameFormat format = format_of(request);
+    format.film = false;
+    using enum session::PictureEncoding;
+    if (format.picture == Planes || format.picture == None) format.picture = Exr;
+    return format;
+}
+
 }  // namespace
 
 Views::Views(const ViewSettings& settings, const RenderServices& services, SessionTable& sessions,
@@ -58,7 +67,7 @@ std::string Views::open(const ViewOwner& owner, std::uint64_t number, session::V
         return "the statistics of this view have " + std::to_string(film_bytes >> 20) +
                " MiB a frame, more than 128: ask for a picture, fewer channels or a smaller window";
     }
-    if (request.name.empty()) request.name = owner.name + "/" + std::to_string(number);
+    if (request.name.empty()) request.name = name_of_unnamed(owner, number);
     std::string problem;
     ViewState* view = find_or_add(owner, number, request.name, problem);
     if (view == nullptr) return problem;
@@ -69,9 +78,23 @@ std::string Views::open(const ViewOwner& owner, std::uint64_t number, session::V
     view->orphaned.reset();
     const Delivery::FrameFormat format = format_of(request);
     delivery_.watch(owner.session, number, view->id, format);
-    if (request.detached) delivery_.keep(view->id, format);  // its end is for take_ended_jobs()
+    if (request.detached) {
+        delivery_.keep(view->id, format);  // its end is for take_ended_jobs()
+    } else {
+        delivery_.release(view->id);  // its owner is back
+    }
     change(*view, std::move(request), version, now);
     return {};
+}
+
+// After a reconnection the owner may have another name than before.
+std::string Views::name_of_unnamed(const ViewOwner& owner, std::uint64_t number) const {
+    const std::string ending = "/" + std::to_string(number);
+    for (const auto& [id, view] : table_.all()) {
+        const bool is_owner = view.owner.user == owner.user && view.owner.key == owner.key;
+        if (view.orphaned && is_owner && view.name.ends_with(ending)) return view.name;
+    }
+    return owner.name + ending;
 }
 
 // The view of this number, or the owner's orphaned view of this name, or a new one.
@@ -223,13 +246,22 @@ void Views::session_left(SessionId session, DisconnectReason reason, TimePoint n
     picks_.session_left(session);
     for (const std::uint64_t number : delivery_.numbers(session)) {
         ViewState& view = *table_.find(*delivery_.watched(session, number));
-        if (reason == DisconnectReason::Graceful || !view.shows_all()) {
+        const bool is_owner = view.owner.session == session;
+        if (reason == DisconnectReason::Graceful || (!view.shows_all() && !is_owner)) {
             end(session, {.number = number}, now);
             continue;
         }
         delivery_.leave(session, number);
-        if (delivery_.watchers(view.id) == 0 || view.owner.session == session) view.orphaned = now;
+        if (view.request.detached) continue;
+        if (delivery_.watchers(view.id) == 0 || is_owner) view.orphaned = now;
+        if (!view.shows_all() && settings_.orphan_limit > Duration::zero())
+            delivery_.keep(view.id, format_of_orphan(view.request));
     }
+}
+
+std::optional<Duration> Views::orphan_time(const ViewState& view, TimePoint now) const {
+    if (!view.orphaned || view.request.detached) return std::nullopt;
+    return *view.orphaned + settings_.orphan_limit - now;
 }
 
 void Views::remove(ViewId id) {
@@ -292,7 +324,11 @@ void Views::restore(std::vector<wire::SavedView>&& saved, Version version, Hash1
         view.waits_since = now;
         view.orphaned = now;
         const session::ViewRequest& request = view.request;
-        if (request.detached) delivery_.keep(view.id, format_of(request));
+        if (request.detached) {
+            delivery_.keep(view.id, format_of(request));
+        } else if (!view.shows_all()) {
+            delivery_.keep(view.id, format_of_orphan(request));
+        }
         // Film of another scene is useless, and a view with a time limit must start over.
         if (old.blocks.empty() || old.scene_hash_of_film != scene_hash || view.request.stop.has_clock())
             continue;
@@ -347,8 +383,10 @@ std::optional<GroupStage> Views::next_group_stage(LockstepGroup::Consumer consum
 void Views::forget_orphans(TimePoint now) {
     std::vector<ViewId> forgotten;
     for (const auto& [id, view] : table_.all()) {
-        if (view.orphaned && delivery_.watchers(id) == 0 && now - *view.orphaned > settings_.orphan_patience)
-            forgotten.push_back(id);
+        if (!view.orphaned || view.request.detached) continue;
+        const bool is_watched = delivery_.watchers(id) > (delivery_.is_kept(id) ? 1u : 0u);
+        const Duration limit = view.shows_all() ? settings_.orphan_patience : settings_.orphan_limit;
+        if (!is_watched && now - *view.orphaned > limit) forgotten.push_back(id);
     }
     for (const ViewId view : forgotten) remove(view);
 }

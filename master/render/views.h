@@ -46,8 +46,11 @@ class Views {
     std::vector<Delivery::Ended> take_ended_jobs() { return delivery_.take_ended(); }
     // Ends the job; other watchers keep watching the view.
     void release(ViewId view);
+    void stop_keeping(ViewId view) { delivery_.release(view); }  // the view stays
     bool is_job(ViewId view) const { return delivery_.is_kept(view); }
     bool has_jobs() const;
+    // How long a job whose client was lost is kept; nothing for one that was submitted as a job.
+    std::optional<Duration> orphan_time(const ViewState& view, TimePoint now) const;
     session::ViewProgress progress(const ViewState& view) const { return runner_.progress(view); }
     void send_kept(const SessionRecord& session, Delivery::Ended kept) {
         delivery_.send_kept(session, std::move(kept));
@@ -56,7 +59,7 @@ class Views {
 
     void taken(SessionId session, const wire::FrameTaken& taken) { delivery_.taken(session, taken); }
     void pick(SessionId session, const wire::Pick& request, Version version);
-    // On a timeout its views are kept for a while.
+    // On a timeout its views are kept for a while: frames whose end it waits for as jobs, which others can fetch.
     enum class DisconnectReason { Graceful, Timeout };
     void session_left(SessionId session, DisconnectReason reason, TimePoint now);
     void session_resumed(SessionId session) { delivery_.resumed(session); }
@@ -98,6 +101,7 @@ class Views {
   private:
     ViewState* find_or_add(const ViewOwner& owner, std::uint64_t number, const std::string& name,
                            std::string& problem);
+    std::string name_of_unnamed(const ViewOwner& owner, std::uint64_t number) const;
     ViewState& view_to_filter(const std::string& name);
     void change(ViewState& view, session::ViewRequest&& request, Version version, TimePoint now);
     void remove(ViewId view);

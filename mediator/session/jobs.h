@@ -21,16 +21,18 @@ struct JobName {
 
 struct JobStatus {
     JobName job;
-    std::string scene;          // its title
-    bool has_ended = false;     // the picture can be fetched, or the summary says why there is none
-    ViewProgress progress;      // until then
-    ViewSummary summary;        // from then on
-    std::int64_t ended_at = 0;  // ns since 1970
+    std::string scene;            // its title
+    bool has_ended = false;       // the picture can be fetched, or the summary says why there is none
+    ViewProgress progress;        // until then
+    ViewSummary summary;          // from then on
+    std::int64_t ended_at = 0;    // ns since 1970
+    std::int64_t kept_until = 0;  // its client was lost: when the job is removed, ns since 1970; 0 = it stays
     static constexpr auto describe(auto row) {
         using Self = JobStatus;
         return std::tuple(row(1, "job", &Self::job), row(2, "scene", &Self::scene),
                           row(3, "has_ended", &Self::has_ended), row(4, "progress", &Self::progress),
-                          row(5, "summary", &Self::summary), row(6, "ended_at", &Self::ended_at));
+                          row(5, "summary", &Self::summary), row(6, "ended_at", &Self::ended_at),
+                          row(7, "kept_until", &Self::kept_until));
     }
 };
 

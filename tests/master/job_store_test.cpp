@@ -137,5 +137,21 @@ TEST_F(JobStoreTest, AnInvalidFolderIsAnError) {
     EXPECT_THROW(jobs.record_to(folder / "jobs"), Error);
 }
 
+TEST_F(JobStoreTest, JobsOfLostClientsExpireAndOthersStay) {
+    JobStore jobs(events);
+    jobs.add(job("ann", "kept"), picture(5));
+    wire::StoredJob lost = job("ann", "lost");
+    lost.status.kept_until = 100;
+    jobs.add(wire::StoredJob(lost), picture(5));
+    EXPECT_EQ(jobs.unused_name({"ann", "lost"}), "lost (2)");
+    EXPECT_EQ(jobs.unused_name({"bob", "lost"}), "lost");
+    jobs.remove_expired(99);
+    EXPECT_EQ(jobs.all().size(), 2u);
+    jobs.remove_expired(100);
+    ASSERT_EQ(jobs.all().size(), 1u);
+    EXPECT_EQ(jobs.all()[0]->job.status.job.name, "kept");
+    EXPECT_EQ(reported.size(), 1u);
+}
+
 }  // namespace
 }  // namespace tessera::master
