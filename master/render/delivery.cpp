@@ -293,4 +293,8 @@ void Delivery::send(Shipment& shipment, const SessionRecord& session) {
     shipment.tiles_requested = until;
 }
 
+Delivery::FrameFormat format_of(const session::ViewRequest& request) {
+    return {request.picture, request.film, request.frames, request.display_transform};
+}
+
 }  // namespace tessera::master

@@ -124,4 +124,7 @@ class Delivery {
     std::uint64_t next_frame_ = 1;
 };
 
+// What the client that opens the view receives.
+Delivery::FrameFormat format_of(const session::ViewRequest& request);
+
 }  // namespace tessera::master
