@@ -210,7 +210,10 @@ void RenderMaster::bulk(net::Message& message, TimePoint now) {
             return service_.absent(*session, *absent, now);
         }
         if (const auto* request = std::get_if<wire::BlobRequest>(&*decoded)) {
-            return outbox_.bulk(message.peer, wire::answer(*request, *blobs_));
+            if (scene_.may_fetch(*session, request->hash))
+                return outbox_.bulk(message.peer, wire::answer(*request, *blobs_));
+            outbox_.bulk(message.peer, wire::BlobAbsent{request->hash});
+            return drop(message, "viewers may not read the blobs of the scene");
         }
         return drop(message, "clients may not send this kind of message");
     }

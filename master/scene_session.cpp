@@ -17,8 +17,14 @@ SceneSession::SceneSession(std::uint64_t epoch, const ViewSettings& settings, co
     : services_(services),
       owner_timeout_(settings.orphan_limit),
       authority_(epoch, services.blobs),
-      distributor_(authority_, *services.blobs, services.outbox, services.events),
-      views_(settings, services.render, services.sessions, services.outbox, services.events),
+      encoder_([&outputs = services.render.outputs](EncodedScene made) { outputs.put(std::move(made)); }),
+      distributor_(authority_, encoder_, *services.blobs, services.outbox, services.events),
+      reads_(authority_, encoder_, *services.blobs, services.sessions, services.outbox),
+      views_(settings, services.render, services.sessions, services.outbox, services.events,
+             [this](ObjectId id) {
+                 const scene::Object* object = authority_.scene().find(id);
+                 return object ? scene::name(*object) : std::string();
+             }),
       display_(authority_, services.sessions, views_, services.outbox, services.events) {}
 
 std::string SceneSession::unique_name(const std::string& wanted) const {
@@ -99,7 +105,7 @@ void SceneSession::close(TimePoint now) {
     for (const auto& [id, member] : members_) authority_.forget(id);
     members_.clear();
     reads_.clear();
-    if (auto cleared = authority_.clear()) publish(*cleared, now);
+    if (auto cleared = authority_.clear()) publish(std::move(*cleared), now);
     if (journal_) journal_->closed();
     scene_ = {};
 }
@@ -113,7 +119,7 @@ void SceneSession::left(SessionId session, Views::DisconnectReason reason, TimeP
     authority_.release_all(session);
     authority_.forget(session);
     members_.erase(member);
-    std::erase_if(reads_, [&](const WaitingRead& read) { return read.session == session; });
+    reads_.left(session);
     if (reason == Views::DisconnectReason::Timeout && members_.empty()) owner_missing_since_ = now;
     close_when_left(now);
 }
@@ -192,37 +198,12 @@ void SceneSession::done(const SessionRecord& session, std::uint64_t request, std
 }
 
 void SceneSession::handle(SessionRecord& session, const wire::ReadScene& request) {
-    reads_.push_back({session.id, request, authority_.pending()});
+    if (std::string problem = reads_.read(session, request); !problem.empty())
+        done(session, request.request, std::move(problem));
 }
 
-// Members that follow a scene read the same change lists: the latest one is encoded once.
-scene::BlobPtr SceneSession::encoded(const scene::ChangeList& list) {
-    scene::BlobPtr blob = latest_content_.blob.lock();
-    if (!blob || latest_content_.from != list.from || latest_content_.to != list.to) {
-        blob = services_.blobs->insert(wire::encode(list));
-        latest_content_ = {list.from, list.to, blob};
-    }
-    return blob;
-}
-
-// At most one content per member is kept; a second request before the first content was fetched gets a newer
-// one.
-void SceneSession::answer(const WaitingRead& read) {
-    const SessionRecord* session = services_.sessions.find(read.session);
-    if (session == nullptr) return;
-    auto changes = authority_.since(read.request.known);
-    const scene::ChangeList list = changes ? std::move(*changes) : authority_.snapshot();
-    net::Bytes message;
-    if (wire::may_fit_control(list.entries.size()))
-        message = wire::encode(wire::ControlMessage(
-            wire::SceneContent{.request = read.request.request, .list = list, .blob = {}}));
-    if (message.empty() || !wire::fits_control(message)) {
-        const scene::BlobPtr blob = encoded(list);
-        members_.at(read.session).content = blob;
-        message = wire::encode(wire::ControlMessage(wire::SceneContent{
-            .request = read.request.request, .list = {}, .blob = scene::reference(*blob)}));
-    }
-    services_.outbox.control(session->control, std::move(message));
+bool SceneSession::may_fetch(const SessionRecord& session, const Hash256& blob) const {
+    return session.role != net::Role::Viewer || reads_.may_fetch(session.id, blob) || display_.has(blob);
 }
 
 void SceneSession::handle(SessionRecord& session, const wire::LockObjects& request) {
@@ -269,11 +250,11 @@ std::string SceneSession::open_view(const SessionRecord& session, std::uint64_t 
     publish_if_due(now);
     const bool waits_for_end = wanted.frames == session::Frames::Last;
     if (waits_for_end && authority_.has_unpublished() && views_.may_publish()) {
-        if (auto changes = authority_.publish()) publish(*changes, now);
+        if (auto changes = authority_.publish()) publish(std::move(*changes), now);
     }
     if (views_.table().all().size() <= 1) {
         const glm::dvec3 eye(wanted.view.camera.world_from_camera[3]);
-        if (auto moved = authority_.follow_camera(eye)) publish(*moved, now);
+        if (auto moved = authority_.follow_camera(eye)) publish(std::move(*moved), now);
     }
     const ViewOwner owner{session.id, name(session.id), session.user, members_.at(session.id).key};
     std::string problem = views_.open(owner, number, wanted, authority_.version(), now);
@@ -321,17 +302,19 @@ void SceneSession::follow_display(TimePoint now) {
         return;
     const auto head = display_.head_in_world();
     if (!head) return;
-    if (auto moved = authority_.follow_camera(*head)) publish(*moved, now);
+    if (auto moved = authority_.follow_camera(*head)) publish(std::move(*moved), now);
 }
 
-void SceneSession::publish(const scene::ChangeList& changes, TimePoint now) {
+void SceneSession::publish(scene::ChangeList&& published, TimePoint now) {
+    const auto shared = std::make_shared<const scene::ChangeList>(std::move(published));
+    const scene::ChangeList& changes = *shared;
     published_at_ = now;
     ++counts_.versions;
     published_transactions_ = authority_.transactions();
     // Outdated work is cancelled before the change is sent to the nodes, so that they build sooner.
     const bool restarts = views_.scene_changed(changes, authority_.scene());
     const std::uint64_t before = services_.outbox.bytes.control;
-    distributor_.published(services_.nodes, changes, now);
+    distributor_.published(services_.nodes, shared, now);
     counts_.change_bytes += services_.outbox.bytes.control - before;
     traces_.published(changes.to, now);
     if (display_.scene_changed(changes)) follow_display(now);
@@ -346,7 +329,7 @@ void SceneSession::publish_if_due(TimePoint now) {
     const bool waits = authority_.has_unpublished();
     views_.pause_passes(waits);
     if (!waits || now - published_at_ < VersionInterval || !views_.may_publish()) return;
-    if (auto changes = authority_.publish()) publish(*changes, now);
+    if (auto changes = authority_.publish()) publish(std::move(*changes), now);
     views_.pause_passes(false);
 }
 
@@ -356,6 +339,9 @@ void SceneSession::take(RenderOutput& output, TimePoint now) {
         if (taken != Dispatcher::Taken::Dropped) views_.took(*report, taken, now);
     } else if (const auto* failure = std::get_if<TaskFailure>(&output)) {
         services_.events({wire::Severity::Error, failure->text});
+    } else if (const auto* encoded = std::get_if<EncodedScene>(&output)) {
+        distributor_.take(*encoded, services_.nodes, now);
+        reads_.take(*encoded);
     } else if (auto* made = std::get_if<OutputResult>(&output)) {
         display_.add_output(std::move(*made), now);
     } else {
@@ -370,11 +356,7 @@ void SceneSession::tick(TimePoint now) {
     close_when_left(now);
     if (open_) {
         publish_if_due(now);
-        std::erase_if(reads_, [&](const WaitingRead& read) {
-            if (authority_.version().number < read.wanted.number) return false;
-            answer(read);
-            return true;
-        });
+        reads_.tick();
     }
     views_.advance(now);
     display_.tick(now);

@@ -14,6 +14,7 @@
 #include "master/scene/edit_trace.h"
 #include "master/scene/scene_authority.h"
 #include "master/scene/scene_distributor.h"
+#include "master/scene/scene_reads.h"
 #include "master/scene/session_journal.h"
 
 namespace tessera::master {
@@ -52,6 +53,9 @@ class SceneSession {
     DisplayService& display() { return display_; }
     const DisplayService& display() const { return display_; }
 
+    // Blobs of the scene are for editors and nodes. A viewer may fetch what it was sent, and those of the display.
+    bool may_fetch(const SessionRecord& session, const Hash256& blob) const;
+
     bool is_open() const { return open_; }
     bool is_member(SessionId session) const { return members_.contains(session); }
     const std::string& name(SessionId session) const { return members_.at(session).name; }
@@ -69,7 +73,7 @@ class SceneSession {
     void left(SessionId session, Views::DisconnectReason reason, TimePoint now);
 
     // Distributes the changes to nodes, views and display.
-    void publish(const scene::ChangeList& changes, TimePoint now);
+    void publish(scene::ChangeList&& changes, TimePoint now);
     // Called when a member's edit was answered.
     void edited(const SessionRecord& session, const scene::Edit& edit, const EditAnswer& answer,
                 std::uint64_t message_bytes, TimePoint now);
@@ -117,22 +121,10 @@ class SceneSession {
         std::uint64_t key = 0;
         wire::SetPresence presence;
         TimePoint presence_until{};
-        scene::BlobPtr content;  // the scene as last read: kept until the client has received it
-    };
-    struct LatestContent {
-        Version from, to;
-        std::weak_ptr<const scene::Blob> blob;  // an encoded change list, owned by members
-    };
-    struct WaitingRead {
-        SessionId session;
-        wire::ReadScene request;
-        Version wanted;  // the version that has all edits made before the request
     };
 
     void open(wire::RecordedTitle scene);
     std::string unique_name(const std::string& wanted) const;
-    void answer(const WaitingRead& read);
-    scene::BlobPtr encoded(const scene::ChangeList& list);
     void done(const SessionRecord& session, std::uint64_t request, std::string problem);
     void follow_display(TimePoint now);
     void publish_if_due(TimePoint now);
@@ -151,7 +143,9 @@ class SceneSession {
     MasterServices services_;
     Duration owner_timeout_;
     SceneAuthority authority_;
+    SceneEncoder encoder_;
     SceneDistributor distributor_;
+    SceneReads reads_;
     Views views_;
     DisplayService display_;
     std::optional<SessionJournal> journal_;
@@ -160,8 +154,6 @@ class SceneSession {
     std::optional<TimePoint>
         owner_missing_since_;  // a recovered exclusive scene: since when it waits for its owner
     std::map<SessionId, Member> members_;
-    LatestContent latest_content_;
-    std::vector<WaitingRead> reads_;
     TimePoint published_at_{};
     std::uint64_t published_transactions_ = 0;  // up to the published version
     std::uint64_t built_transactions_ = 0;      // up to the latest version that a node has built

@@ -87,6 +87,13 @@ std::string DisplayService::open(const scene::BlobPtr& description, std::vector<
     return {};
 }
 
+bool DisplayService::has(const Hash256& blob) const {
+    if (!open_) return false;
+    return open_->description.hash == blob ||
+           std::ranges::any_of(open_->content,
+                               [&](const scene::BlobPtr& known) { return known->hash() == blob; });
+}
+
 void DisplayService::close() {
     if (!open_) return;
     for (const auto& output_client : open_->output_clients) {

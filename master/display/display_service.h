@@ -29,6 +29,7 @@ class DisplayService {
     std::string open(const scene::BlobPtr& description, std::vector<scene::BlobPtr> content, TimePoint now);
     void close();
     bool is_open() const { return open_.has_value(); }
+    bool has(const Hash256& blob) const;  // the description, or a blob that it refers to
 
     // Returns "" or the problem.
     std::string adjust(const session::DisplayAdjustment& request);

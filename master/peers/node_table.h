@@ -29,6 +29,7 @@ struct NodeRecord {
     Version sent;                       // of the last change list sent to it
     Version reported;                   // committed, hash agrees
     TimePoint sent_at{};                // when
+    std::uint64_t awaits = 0;           // the job that encodes the next change list for it; 0 = none
     Version refused;                    // did not fit into its memory
     std::string refusal;                // why
     std::uint32_t hash_mismatches = 0;  // at the version `sent`

@@ -38,4 +38,29 @@ bool allowed(net::Role role, const wire::BulkMessage& message) {
     return is_among(role, wire::table::Bulk::senders(message));
 }
 
+std::string role_table() {
+    constexpr net::Role Columns[] = {net::Role::Viewer, net::Role::Editor, net::Role::Node,
+                                     net::Role::Operator};
+    std::string table = "| message |";
+    for (const net::Role role : Columns) table += std::string(" ") + net::name(role) + " |";
+    table += "\n|---|---|---|---|---|\n";
+    const auto add = [&](const auto& message, std::string_view name) {
+        std::string row = "| `" + std::string(name) + "` |";
+        bool any = false;
+        for (const net::Role role : Columns) {
+            row += allowed(role, message) ? " yes |" : "  |";
+            any = any || allowed(role, message);
+        }
+        if (any) table += row + "\n";  // others are sent by the master
+    };
+    wire::table::Control::for_each([&](const wire::ControlMessage& message, std::string_view name) {
+        if (!std::holds_alternative<wire::Hello>(message)) return add(message, name);
+        add(wire::ControlMessage(wire::Hello{.peer = wire::PeerKind::Client}), "hello of a client");
+        add(wire::ControlMessage(wire::Hello{.peer = wire::PeerKind::Node}), "hello of a node");
+    });
+    wire::table::Bulk::for_each(
+        [&](const wire::BulkMessage& message, std::string_view name) { add(message, name); });
+    return table;
+}
+
 }  // namespace tessera::master

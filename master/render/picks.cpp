@@ -118,6 +118,7 @@ void Picks::answer(const Task& task, const frame::FilmTile& film) {
         const std::uint32_t normal = film.channels.first_plane(frame::Channel::Normal);
         picked.hit = true;
         picked.object = ObjectId{std::bit_cast<std::uint32_t>(film.plane(object)[0])};
+        picked.name = name_of_(picked.object);
         picked.distance = depth * task.along_axis;
         picked.position = task.eye + task.direction * picked.distance;
         picked.normal = {film.plane(normal)[0], film.plane(normal + 1)[0], film.plane(normal + 2)[0]};

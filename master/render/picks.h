@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <glm/vec3.hpp>
 #include <list>
 
@@ -11,8 +12,10 @@ namespace tessera::master {
 // Finds the object under a pixel, with one sample of a view of the pixel's centre only.
 class Picks {
   public:
-    Picks(ViewIds& ids, PassStarter& passes, SessionTable& sessions, Outbox& outbox)
-        : ids_(ids), passes_(passes), sessions_(sessions), outbox_(outbox) {}
+    // `name_of`: the name of an object of the scene.
+    Picks(ViewIds& ids, PassStarter& passes, SessionTable& sessions, Outbox& outbox,
+          std::function<std::string(ObjectId)> name_of)
+        : ids_(ids), passes_(passes), sessions_(sessions), outbox_(outbox), name_of_(std::move(name_of)) {}
 
     // `seen`: the view that the session watches under this number; null: none.
     void pick(SessionId session, const wire::Pick& request, const view::View* seen, Version version);
@@ -43,6 +46,7 @@ class Picks {
     PassStarter& passes_;
     SessionTable& sessions_;
     Outbox& outbox_;
+    std::function<std::string(ObjectId)> name_of_;
     std::list<Task> tasks_;
 };
 

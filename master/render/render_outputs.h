@@ -11,6 +11,7 @@
 #include "master/render/frame_assembler.h"
 #include "master/render/output_reconstruction.h"
 #include "master/render/reconstruction.h"
+#include "master/scene/scene_encoder.h"
 #include "mediator/net/channel.h"
 
 namespace tessera::master {
@@ -60,7 +61,7 @@ struct TaskFailure {
     std::string text;
 };
 using RenderOutput = std::variant<MergeReport, EncodedTile, FilmBlocks, Reconstructed, CalibrationResult,
-                                  OutputResult, TaskFailure>;
+                                  OutputResult, EncodedScene, TaskFailure>;
 
 // Results of the threads that merge film and reconstruct pictures, for the event loop that owns the channel: each
 // result wakes it. Thread-safe.

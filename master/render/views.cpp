@@ -22,7 +22,7 @@ bool differ_in_filter_alone(view::View a, view::View b) {
 }  // namespace
 
 Views::Views(const ViewSettings& settings, const RenderServices& services, SessionTable& sessions,
-             Outbox& outbox, const EventSink& events)
+             Outbox& outbox, const EventSink& events, std::function<std::string(ObjectId)> name_of)
     : settings_(settings),
       services_(services),
       table_(services.ids),
@@ -30,7 +30,7 @@ Views::Views(const ViewSettings& settings, const RenderServices& services, Sessi
       delivery_(table_, sessions, outbox, services.film),
       runner_(settings_, table_, passes_, delivery_, sessions, outbox, events),
       group_(table_, passes_),
-      picks_(services.ids, passes_, sessions, outbox),
+      picks_(services.ids, passes_, sessions, outbox, std::move(name_of)),
       saver_(table_, passes_) {}
 
 // ---- clients ----

@@ -26,7 +26,7 @@ struct RenderServices {
 class Views {
   public:
     Views(const ViewSettings& settings, const RenderServices& services, SessionTable& sessions,
-          Outbox& outbox, const EventSink& events);
+          Outbox& outbox, const EventSink& events, std::function<std::string(ObjectId)> name_of);
 
     // ---- clients ----
     // Again with the same number: changes camera, size or quality; changing only the filter keeps the film. Returns

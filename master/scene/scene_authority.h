@@ -82,6 +82,8 @@ class SceneAuthority {
     const scene::Scene& scene() const { return scene_; }           // the head
     // The scene at version(), without later edits.
     scene::ChangeList snapshot() const { return versions_.snapshot(scene_); }
+    // The same as a scene of its own; cheap, since it shares its objects with the head.
+    scene::Scene published_scene() const { return versions_.published(scene_); }
     // Changes from the published version `known` to version(); nothing if it is unknown or too old: use snapshot().
     std::optional<scene::ChangeList> since(Version known) const { return versions_.since(known, scene_); }
 

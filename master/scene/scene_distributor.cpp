@@ -4,35 +4,97 @@
 
 namespace tessera::master {
 
-void SceneDistributor::published(NodeTable& nodes, const scene::ChangeList& changes, TimePoint now) {
-    net::Bytes message;
-    if (wire::may_fit_control(changes.entries.size()))
-        message = wire::encode(wire::ControlMessage(wire::Changes{changes}));
-    if (message.empty() || !wire::fits_control(message)) {
-        long_changes_ = blobs_.insert(wire::encode(changes));
+void SceneDistributor::published(NodeTable& nodes, const std::shared_ptr<const scene::ChangeList>& changes,
+                                 TimePoint now) {
+    // A node that was not sent the version before awaits a snapshot, or will get one by repair().
+    const auto follows = [&](const NodeRecord& node) { return node.sent == changes->from; };
+    if (changes->entries.size() > SceneEncoder::ShortList) {
+        const std::uint64_t job = encoder_.encode(changes->from, changes->to, [changes] { return *changes; });
+        for (auto& [id, node] : nodes.all()) {
+            if (!follows(node)) continue;
+            node.awaits = job;
+            node.sent = {};
+            node.sent_at = now;
+        }
+        return;
+    }
+    net::Bytes message = wire::encode(wire::ControlMessage(wire::Changes{*changes}));
+    if (!wire::fits_control(message)) {
+        long_changes_ = blobs_.insert(wire::encode(*changes));
         message = wire::encode(wire::ControlMessage(
-            wire::ChangesByBlob{changes.from, changes.to, scene::reference(*long_changes_)}));
+            wire::ChangesByBlob{changes->from, changes->to, scene::reference(*long_changes_)}));
     }
     for (auto& [id, node] : nodes.all()) {
-        if (node.sent != changes.from) continue;  // it is being sent a snapshot, or will be by repair()
+        if (!follows(node)) continue;
         outbox_.control(node.control, net::Bytes(message));
-        node.sent = changes.to;
+        node.sent = changes->to;
         node.sent_at = now;
         node.hash_mismatches = 0;
     }
 }
 
 void SceneDistributor::send_snapshot(NodeRecord& node, TimePoint now) {
-    if (!snapshot_ || snapshot_version_ != authority_.version() || !blobs_.find(snapshot_->hash())) {
-        snapshot_ = blobs_.insert(wire::encode(authority_.snapshot()));
-        snapshot_version_ = authority_.version();
-    }
     const Version version = authority_.version();
-    outbox_.control(node.control,
-                    wire::ChangesByBlob{{version.epoch, 0}, version, scene::reference(*snapshot_)});
+    const bool is_current = snapshot_ && snapshot_version_ == version && blobs_.find(snapshot_->hash());
+    if (!is_current && authority_.scene().objects().size() > SceneEncoder::ShortList) {
+        if (snapshot_job_ == 0) {
+            snapshot_job_ =
+                encoder_.encode({version.epoch, 0}, version,
+                                [scene = authority_.published_scene()] { return scene::snapshot(scene); });
+        }
+        node.awaits = snapshot_job_;
+        node.sent = {};
+        node.sent_at = now;
+        return;
+    }
+    if (!is_current) {
+        snapshot_ = blobs_.insert(wire::encode(authority_.snapshot()));
+        snapshot_version_ = version;
+    }
     if (node.sent != version) node.hash_mismatches = 0;
-    node.sent = version;
+    send_blob(node, {version.epoch, 0}, version, snapshot_, now);
+}
+
+void SceneDistributor::send_blob(NodeRecord& node, Version from, Version to, const scene::BlobPtr& blob,
+                                 TimePoint now) {
+    outbox_.control(node.control, wire::ChangesByBlob{from, to, scene::reference(*blob)});
+    node.awaits = 0;
+    node.sent = to;
     node.sent_at = now;
+}
+
+// Versions were published while the one that it was sent was being encoded.
+void SceneDistributor::catch_up(NodeRecord& node, TimePoint now) {
+    if (node.sent == authority_.version()) return;
+    const auto changes = authority_.since(node.sent);
+    if (!changes || changes->entries.size() > SceneEncoder::ShortList) return send_snapshot(node, now);
+    const net::Bytes message = wire::encode(wire::ControlMessage(wire::Changes{*changes}));
+    if (!wire::fits_control(message)) return send_snapshot(node, now);
+    outbox_.control(node.control, net::Bytes(message));
+    node.sent = changes->to;
+    node.hash_mismatches = 0;
+}
+
+void SceneDistributor::take(const EncodedScene& made, NodeTable& nodes, TimePoint now) {
+    const bool is_snapshot = made.job == snapshot_job_;
+    if (is_snapshot) snapshot_job_ = 0;
+    const bool is_usable = made.blob && made.to.epoch == authority_.version().epoch;
+    scene::BlobPtr blob;
+    for (auto& [id, node] : nodes.all()) {
+        if (node.awaits != made.job) continue;
+        node.awaits = 0;
+        if (!is_usable) continue;  // repair() tries again
+        if (!blob) blob = blobs_.insert(made.blob);
+        send_blob(node, made.from, made.to, blob, now);
+        catch_up(node, now);
+    }
+    if (!blob) return;
+    if (is_snapshot) {
+        snapshot_ = blob;
+        snapshot_version_ = made.to;
+    } else {
+        long_changes_ = blob;
+    }
 }
 
 void SceneDistributor::resync(NodeRecord& node, const wire::Resync& request, TimePoint now) {
@@ -71,7 +133,8 @@ void SceneDistributor::refused(NodeRecord& node, const wire::SceneRefused& refus
 void SceneDistributor::repair(NodeTable& nodes, TimePoint now, Duration timeout) {
     for (auto& [id, node] : nodes.all()) {
         const bool busy = node.state.phase == session::NodePhase::Syncing ||
-                          node.state.phase == session::NodePhase::Building || node.leaving;
+                          node.state.phase == session::NodePhase::Building || node.leaving ||
+                          node.awaits != 0;
         const bool settled = node.reported == authority_.version() || node.refused == authority_.version();
         if (settled || busy || now - node.sent_at < timeout) continue;
         ++resyncs_;

@@ -4,6 +4,7 @@
 #include "master/peers/node_table.h"
 #include "master/peers/outbox.h"
 #include "master/scene/scene_authority.h"
+#include "master/scene/scene_encoder.h"
 
 namespace tessera::master {
 
@@ -12,10 +13,16 @@ namespace tessera::master {
 // wrong; one whose hash is wrong twice at the same version is to be removed.
 class SceneDistributor {
   public:
-    SceneDistributor(SceneAuthority& authority, scene::BlobStore& blobs, Outbox& outbox, EventSink events)
-        : authority_(authority), blobs_(blobs), outbox_(outbox), events_(std::move(events)) {}
+    SceneDistributor(SceneAuthority& authority, SceneEncoder& encoder, scene::BlobStore& blobs,
+                     Outbox& outbox, EventSink events)
+        : authority_(authority),
+          encoder_(encoder),
+          blobs_(blobs),
+          outbox_(outbox),
+          events_(std::move(events)) {}
 
-    void published(NodeTable& nodes, const scene::ChangeList& changes, TimePoint now);
+    void published(NodeTable& nodes, const std::shared_ptr<const scene::ChangeList>& changes, TimePoint now);
+    void take(const EncodedScene& made, NodeTable& nodes, TimePoint now);
     void joined(NodeRecord& node, TimePoint now) { send_snapshot(node, now); }
     void resync(NodeRecord& node, const wire::Resync& request, TimePoint now);
 
@@ -31,13 +38,17 @@ class SceneDistributor {
 
   private:
     void send_snapshot(NodeRecord& node, TimePoint now);
+    void send_blob(NodeRecord& node, Version from, Version to, const scene::BlobPtr& blob, TimePoint now);
+    void catch_up(NodeRecord& node, TimePoint now);
 
     SceneAuthority& authority_;
+    SceneEncoder& encoder_;
     scene::BlobStore& blobs_;
     Outbox& outbox_;
     EventSink events_;
     Version snapshot_version_;
-    scene::BlobPtr snapshot_;  // kept alive here: the store may drop it
+    scene::BlobPtr snapshot_;         // kept alive here: the store may drop it
+    std::uint64_t snapshot_job_ = 0;  // encodes a snapshot; 0 = none
     scene::BlobPtr long_changes_;
     std::uint64_t resyncs_ = 0;
 };

@@ -73,6 +73,19 @@ scene::ChangeList VersionLog::snapshot(const scene::Scene& head) const {
     return list;
 }
 
+scene::Scene VersionLog::published(const scene::Scene& head) const {
+    scene::Scene scene = head;
+    std::vector<scene::Entry> entries;
+    for (const auto& [id, object] : before_) {
+        if (head.find(id)) entries.emplace_back(scene::Remove{id});
+        if (object) entries.emplace_back(scene::Create{id, *object});
+    }
+    // Each removes what is there, or creates what is not: this cannot fail.
+    if (auto applied = scene.apply_entries(entries); !applied) throw applied.error();
+    scene.set_version(version_);
+    return scene;
+}
+
 std::optional<scene::ChangeList> VersionLog::since(Version known, const scene::Scene& head) const {
     if (known.epoch != version_.epoch || known.number > version_.number ||
         version_.number - known.number > log_.size() || known.number == 0) {

@@ -34,6 +34,7 @@ class VersionLog {
 
     // Of the published scene, without unpublished edits.
     scene::ChangeList snapshot(const scene::Scene& head) const;
+    scene::Scene published(const scene::Scene& head) const;  // the published scene itself
     // Changes from `known` to the published scene; none if `known` is unknown or too old.
     std::optional<scene::ChangeList> since(Version known, const scene::Scene& head) const;
 

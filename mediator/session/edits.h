@@ -62,10 +62,12 @@ struct PickResult {
     glm::dvec3 position{0.0};  // world
     glm::vec3 normal{0.0f};    // shading normal, world
     double distance = 0;       // from the eye
+    std::string name;          // of the Geometry
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "version", &PickResult::version), row(2, "hit", &PickResult::hit),
                           row(3, "object", &PickResult::object), row(4, "position", &PickResult::position),
-                          row(5, "normal", &PickResult::normal), row(6, "distance", &PickResult::distance));
+                          row(5, "normal", &PickResult::normal), row(6, "distance", &PickResult::distance),
+                          row(7, "name", &PickResult::name));
     }
 };
 

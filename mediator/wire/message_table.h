@@ -47,6 +47,10 @@ struct MessageTable {
         constexpr Senders From[] = {Rows::senders...};
         return From[message.index()];
     }
+    // Calls `use(message, name)` with a default message of each row.
+    static void for_each(const auto& use) {
+        (use(Message(typename Rows::Type{}), Rows::alternative().name), ...);
+    }
     static constexpr bool has(unsigned number) { return ((number == Rows::number) || ...); }
     // No duplicate numbers, and no retired ones.
     static constexpr bool is_valid(std::initializer_list<unsigned> retired) {

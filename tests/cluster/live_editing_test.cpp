@@ -72,10 +72,25 @@ TEST_F(LiveEditing, ARefusedEditChangesNothing) {
     EXPECT_EQ(bob->scene().version(), before);
 }
 
-TEST_F(LiveEditing, AViewerMayReadButNotEdit) {
+TEST_F(LiveEditing, AViewerSeesCamerasButNeitherReadsNorEditsTheScene) {
     auto blobs = std::make_shared<BlobStore>();
     const auto eve = cluster.member("eve", blobs, net::Role::Viewer);
-    EXPECT_NE(eve->scene().find(material()), nullptr);
+    for (const auto& [id, object] : eve->scene().objects()) {
+        const ObjectKind kind = scene::kind(*object);
+        EXPECT_TRUE(kind == ObjectKind::Root || kind == ObjectKind::Transform || kind == ObjectKind::Camera)
+            << id.value;
+    }
+    eve->refresh();
+    bob->refresh();
+    EXPECT_EQ(eve->scene().version(), bob->scene().version());
+    for (const auto& [id, object] : bob->scene().objects()) {
+        const auto* geometry = std::get_if<scene::Geometry>(object.get());
+        if (geometry == nullptr) continue;
+        EXPECT_THROW((void)eve->fetch(geometry->positions), Error) << "blobs are for editors";
+        EXPECT_NE(bob->fetch(geometry->positions), nullptr);
+    }
+    EXPECT_THROW((void)eve->history(10), Error);
+    EXPECT_THROW((void)eve->writers(material()), Error);
     try {
         (void)eve->submit({paint({0, 0, 0, 1})});
         FAIL() << "a viewer edited the scene";

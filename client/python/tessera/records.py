@@ -88,6 +88,7 @@ class Hit:
     position: tuple[float, ...]  # world
     normal: tuple[float, ...]  # shading normal, world
     distance: float  # from the camera
+    name: str = ""  # of the geometry
 
 
 @dataclass(frozen=True)

@@ -128,7 +128,7 @@ class View:
         seen = picked.result
         if not seen.hit:
             return None
-        return Hit(seen.object, tuple(seen.position), tuple(seen.normal), seen.distance)
+        return Hit(seen.object, tuple(seen.position), tuple(seen.normal), seen.distance, text(seen.name))
 
     def stop(self) -> None:
         """Stops rendering; the last frame has the samples merged so far."""
