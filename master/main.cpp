@@ -32,11 +32,16 @@ int serve(const master::MasterOptions& options) {
     net::ServerSettings server{.endpoint = options.listen};
     if (!options.keys.empty()) server.keys.emplace(options.keys);
     auto channel = net::make_zmq_server(context, server);
+    const net::ZmqServer& counters = *channel;  // the master owns it, and asks it on the same thread
 
     const SteadyClock clock;
     master::MasterSettings settings{.software = "tessera " + cli::version()};
     settings.liveness.interval =
         std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options.heartbeat_seconds));
+    settings.refused_traffic = [&counters] {
+        const auto dropped = counters.dropped();
+        return net::RefusedTraffic{counters.refused_handshakes(), dropped.revoked + dropped.malformed};
+    };
     settings.session_folder = options.session;
     settings.views.orphan_limit =
         std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options.orphan_seconds));

@@ -37,9 +37,10 @@ RenderMaster::RenderMaster(std::unique_ptr<net::Channel> channel, std::shared_pt
       blobs_(std::move(blobs)),
       clock_(clock),
       settings_(settings),
-      events_(std::move(events)),
+      limiter_(clock, std::move(events)),
+      events_([this](const Event& event) { limiter_(event); }),
       started_(clock.now()),
-      guard_(clock, events_),
+      guard_(clock, events_, monitor_),
       outbox_(*channel_),
       nodes_(settings.liveness, settings.stuck),
       outputs_(*channel_),
@@ -89,17 +90,12 @@ void RenderMaster::save_at_the_end() {
 }
 
 void RenderMaster::step(TimePoint now, std::stop_token stop) {
-    // Handles a burst of messages at once, but bounded, so that heartbeats are not delayed.
-    constexpr int BurstLimit = 256;
-    TimePoint deadline = next_wake(now);
-    for (int i = 0; i < BurstLimit; ++i) {
-        net::Received received = channel_->receive(deadline);
-        auto* message = std::get_if<net::Message>(&received);
-        if (message == nullptr) break;
-        receive(std::move(*message), clock_.now());
-        if (stop.stop_requested()) return;
-        deadline = now;  // after the first one take only messages that have already arrived
-    }
+    const TimePoint deadline = intake_.empty() ? next_wake(now) : now;
+    net::Received received = channel_->receive(deadline);
+    const TimePoint begun = clock_.now();
+    const bool heard_all = take_in(std::move(received));
+    serve_messages(begun, stop);
+    if (stop.stop_requested()) return;
     now = clock_.now();
     run_posted();
     for (RenderOutput& output : outputs_.take())
@@ -113,7 +109,62 @@ void RenderMaster::step(TimePoint now, std::stop_token stop) {
     guard_.run("sending heartbeats", [&] { heartbeats(now); });
     guard_.run("sending", [&] { outbox_.flush(); });
     guard_.run("dropping lost peers", [&] { drop_lost_peers(now); });
-    guard_.run("removing silent peers", [&] { remove_timed_out_peers(now); });
+    limiter_.tick();
+    const TimePoint end = clock_.now();
+    // Also when the whole process stood still, and woke later than it wanted to.
+    forgive_silence(end - begun + std::max(Duration::zero(), begun - std::max(deadline, now_before_)), end);
+    monitor_.stepped(end - begun);
+    now_before_ = end;
+    if (heard_all) guard_.run("removing silent peers", [&] { remove_timed_out_peers(end); });
+}
+
+// Film goes to its thread at once; other messages wait for their turn.
+bool RenderMaster::take_in(net::Received received) {
+    constexpr int BurstLimit = 256;  // so that nothing else is delayed
+    for (int i = 0; i < BurstLimit; ++i) {
+        auto* message = std::get_if<net::Message>(&received);
+        if (message == nullptr) return true;
+        const TimePoint now = clock_.now();
+        if (message->link == net::Link::Bulk && wire::is_film(message->bytes)) {
+            receive(std::move(*message), now);
+        } else {
+            // It is a sign of life, even if it has to wait.
+            const bool is_control = message->link == net::Link::Control;
+            if (!intake_.empty()) {
+                if (NodeRecord* node = is_control ? nodes_.by_control(message->peer) : nodes_.by_bulk(message->peer))
+                    node->liveness.on_message(now);
+                if (SessionRecord* session =
+                        is_control ? sessions_.by_control(message->peer) : sessions_.by_bulk(message->peer))
+                    session->liveness.on_message(now);
+            }
+            if (!intake_.put(*message)) drop(*message, "too many messages of this key wait");
+        }
+        received = channel_->receive(now);  // only what has already arrived
+    }
+    return false;
+}
+
+void RenderMaster::serve_messages(TimePoint begun, const std::stop_token& stop) {
+    constexpr Duration Budget = std::chrono::milliseconds(5);
+    TimePoint now = clock_.now();
+    while (!intake_.empty() && !stop.stop_requested()) {
+        net::Message message = intake_.take();
+        const std::string user = message.user;
+        const Duration before = LoopMonitor::thread_cpu_time();
+        receive(std::move(message), now);
+        monitor_.ran("a message", LoopMonitor::thread_cpu_time() - before);
+        const TimePoint after = clock_.now();
+        intake_.used(user, after - now);
+        now = after;
+        if (now - begun > Budget) return;
+    }
+}
+
+// What peers sent meanwhile has not been read yet: they do not count as silent.
+void RenderMaster::forgive_silence(Duration time, TimePoint now) {
+    if (time < settings_.liveness.interval / 4) return;
+    for (auto& [id, node] : nodes_.all()) node.liveness.was_deaf(time, now);
+    for (auto& [id, session] : sessions_.all()) session.liveness.was_deaf(time, now);
 }
 
 void RenderMaster::run_posted() {
@@ -210,6 +261,10 @@ void RenderMaster::bulk(net::Message& message, TimePoint now) {
             return service_.absent(*session, *absent, now);
         }
         if (const auto* request = std::get_if<wire::BlobRequest>(&*decoded)) {
+            // Clients have eight requests under way, and repeat those that are not answered.
+            constexpr std::size_t MaxWaiting = std::size_t{64} << 20;
+            if (outbox_.waiting_bytes(net::Link::Bulk, message.peer) > MaxWaiting)
+                return drop(message, "it asks for blobs faster than it receives them");
             if (scene_.may_fetch(*session, request->hash))
                 return outbox_.bulk(message.peer, wire::answer(*request, *blobs_));
             outbox_.bulk(message.peer, wire::BlobAbsent{request->hash});
@@ -240,6 +295,19 @@ void RenderMaster::welcome(net::PeerId peer, std::uint64_t number, std::uint64_t
                             .epoch = scene_.authority().version().epoch,
                             .heartbeat_interval = settings_.liveness.interval,
                             .missed_heartbeats = static_cast<std::uint32_t>(settings_.liveness.missed)});
+}
+
+std::string RenderMaster::full_text(bool is_node, const net::Message& message) const {
+    constexpr const char* Full = "the master is full: try again later";
+    if (is_node) return nodes_.all().size() >= settings_.max_nodes ? Full : "";
+    const bool is_operator = message.role == net::Role::Operator;
+    const std::size_t reserved = is_operator ? 0 : std::min(settings_.sessions_for_operators, settings_.max_sessions);
+    if (sessions_.all().size() >= settings_.max_sessions - reserved) return Full;
+    const auto same_key = std::ranges::count_if(
+        sessions_.all(), [&](const auto& entry) { return entry.second.user == message.user; });
+    if (!is_operator && static_cast<std::size_t>(same_key) >= settings_.max_sessions_per_key)
+        return "this key has " + std::to_string(same_key) + " sessions, as many as one may have: close some";
+    return "";
 }
 
 void RenderMaster::hello(const net::Message& message, wire::Hello hello, TimePoint now) {
@@ -283,10 +351,7 @@ void RenderMaster::hello(const net::Message& message, wire::Hello hello, TimePoi
     if (NodeRecord* node = nodes_.by_control(message.peer)) remove_node(node->id, "it reconnected", now);
     if (SessionRecord* session = sessions_.by_control(message.peer))
         remove_session(session->id, Views::DisconnectReason::Timeout, now);
-    if (is_node ? nodes_.all().size() >= settings_.max_nodes
-                : sessions_.all().size() >= settings_.max_sessions) {
-        return refuse("the master is full: try again later");
-    }
+    if (const std::string full = full_text(is_node, message); !full.empty()) return refuse(full);
     const std::uint64_t number = next_number_++;
     const std::uint64_t token = random_nonzero();
     if (is_node) {

@@ -9,6 +9,9 @@
 #include <vector>
 
 #include "master/guard.h"
+#include "master/loop/intake.h"
+#include "master/loop/loop_monitor.h"
+#include "master/peers/event_limiter.h"
 #include "master/peers/node_table.h"
 #include "master/peers/outbox.h"
 #include "master/peers/session_table.h"
@@ -29,6 +32,9 @@ struct MasterSettings {
     Duration checkpoint_interval = std::chrono::seconds(10);
     wire::BlobLimits blob_limits;
     std::size_t max_sessions = 256, max_nodes = 1024;
+    std::size_t max_sessions_per_key = 64;
+    std::size_t sessions_for_operators = 8;  // of max_sessions: others cannot lock them out
+    std::function<net::RefusedTraffic()> refused_traffic = {};  // by the channel, for the status; none: unknown
 };
 
 // The event loop: one thread that owns the channel, sends heartbeats and dispatches messages. It never renders
@@ -47,6 +53,10 @@ class RenderMaster {
 
   private:
     void step(TimePoint now, std::stop_token stop);
+    bool take_in(net::Received received);  // false: more messages may have arrived
+    void serve_messages(TimePoint begun, const std::stop_token& stop);
+    void forgive_silence(Duration time, TimePoint now);
+    std::string full_text(bool is_node, const net::Message& message) const;  // why no more can join; "" = they can
     void run_posted();
     void receive(net::Message&& message, TimePoint now);
     void control(net::Message& message, TimePoint now);
@@ -76,10 +86,14 @@ class RenderMaster {
     std::shared_ptr<scene::BlobStore> blobs_;
     const Clock& clock_;
     MasterSettings settings_;
+    EventLimiter limiter_;
     EventSink events_;
     TimePoint started_;
+    TimePoint now_before_{};  // the end of the last step
 
+    LoopMonitor monitor_;
     Guard guard_;
+    Intake intake_;
     Outbox outbox_;
     NodeTable nodes_;
     SessionTable sessions_;

@@ -203,7 +203,13 @@ session::ClusterStatus RenderMaster::status(TimePoint now) const {
                                  .resyncs = scene_.distributor().resyncs(),
                                  .display = scene_.display().status(now),
                                  .contradictions = dispatcher_.contradictions(),
-                                 .caught_exceptions = guard_.caught()};
+                                 .caught_exceptions = guard_.caught(),
+                                 .loop = monitor_.status()};
+    if (settings_.refused_traffic) {
+        const net::RefusedTraffic refused = settings_.refused_traffic();
+        reply.refused_handshakes = refused.handshakes;
+        reply.dropped_messages += refused.messages;
+    }
     for (const auto& [id, node] : nodes_.all()) {
         session::NodeStatus entry{
             .summary = {.id = id,

@@ -246,6 +246,7 @@ std::string SceneSession::open_view(const SessionRecord& session, std::uint64_t 
         if (std::string problem = submission_problem(session, wanted); !problem.empty()) return problem;
     }
     if (std::string problem = problem_of(wanted); !problem.empty()) return problem;
+    if (std::string problem = viewer_problem(session, number, wanted); !problem.empty()) return problem;
     // Earlier edits are visible in the view, and the render origin follows the camera while it is the only one.
     publish_if_due(now);
     const bool waits_for_end = wanted.frames == session::Frames::Last;

@@ -132,6 +132,8 @@ class SceneSession {
     void write_saved_views(TimePoint now);
     std::string open_view(const SessionRecord& session, std::uint64_t number,
                           const session::ViewRequest& wanted, TimePoint now);
+    std::string viewer_problem(const SessionRecord& session, std::uint64_t number,
+                               const session::ViewRequest& wanted) const;
     std::string submission_problem(const SessionRecord& session, const session::ViewRequest& wanted) const;
     void record_job(const std::string& name);
     void add_new_jobs(std::vector<wire::SavedView>& saved) const;

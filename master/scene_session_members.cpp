@@ -35,6 +35,27 @@ net::Bytes fitting(wire::Members reply) {
 
 }  // namespace
 
+// Why a viewer may not open this view: viewers share the cluster with those who edit. "" = it may.
+std::string SceneSession::viewer_problem(const SessionRecord& session, std::uint64_t number,
+                                         const session::ViewRequest& wanted) const {
+    constexpr std::size_t MaxViews = 8;                           // of all viewers of a key
+    constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 25;  // in all; 8K
+    constexpr std::uint64_t MaxSpp = 65536;
+    if (session.role != net::Role::Viewer) return {};
+    if (wanted.stop.spp > MaxSpp) return "a viewer may ask for 65536 samples per pixel at most";
+    std::size_t views = 1;
+    std::uint64_t pixels = wanted.view.window.pixel_count();
+    const auto replaced = views_.watched(session.id, number);
+    for (const auto& [id, view] : views_.table().all()) {
+        if (view.owner.user != session.user || id == replaced) continue;
+        ++views;
+        pixels += view.request.view.window.pixel_count();
+    }
+    if (views > MaxViews) return "viewers of this key have 8 views already: close some, or watch one by its name";
+    if (pixels > MaxPixels) return "the views of this viewer's key would have more than 33 million pixels";
+    return {};
+}
+
 void SceneSession::handle(SessionRecord& session, wire::SetPresence request, TimePoint now) {
     Member& member = members_.at(session.id);
     request.text.resize(std::min(request.text.size(), MaxPresenceText));

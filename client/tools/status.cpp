@@ -29,6 +29,18 @@ Json version_value(const Version& version) {
     return {{"epoch", version.epoch}, {"number", version.number}};
 }
 
+Json loop_value(const session::LoopStatus& loop) {
+    Json steps = Json::array();
+    for (std::size_t i = 0; i < loop.steps.size(); ++i) {
+        const bool is_last = i >= session::LoopStatus::Bounds.size();
+        steps.push_back({{"seconds", is_last ? Json() : Json(session::LoopStatus::Bounds[i])}, {"count", loop.steps[i]}});
+    }
+    return {{"steps", steps},
+            {"longest_step_seconds", loop.longest_step_seconds},
+            {"longest_cpu_seconds", loop.longest_cpu_seconds},
+            {"longest_part", loop.longest_part}};
+}
+
 Json live_value(const session::SceneStatus& live) {
     if (live.title.empty()) return nullptr;
     Json stages = Json::object();
@@ -115,11 +127,24 @@ std::string as_json(const session::ClusterStatus& status) {
         {"resyncs", status.resyncs},
         {"contradictions", status.contradictions},
         {"caught_exceptions", status.caught_exceptions},
+        {"refused_handshakes", status.refused_handshakes},
+        {"loop", loop_value(status.loop)},
         {"live", live_value(status.scene)},
         {"display", display_value(status.display)},
         {"nodes", nodes},
     };
     return object.dump(2);
+}
+
+// The time within which this fraction of the steps ended: the upper bound of a bucket; 0 = no steps.
+double step_seconds(const session::LoopStatus& loop, double fraction) {
+    std::uint64_t all = 0, so_far = 0;
+    for (const std::uint64_t steps : loop.steps) all += steps;
+    for (std::size_t i = 0; i < loop.steps.size() && i < session::LoopStatus::Bounds.size(); ++i) {
+        so_far += loop.steps[i];
+        if (all > 0 && double(so_far) >= fraction * double(all)) return session::LoopStatus::Bounds[i];
+    }
+    return all > 0 ? loop.longest_step_seconds : 0.0;
 }
 
 void print_table(const session::ClusterStatus& status) {
@@ -139,6 +164,13 @@ void print_table(const session::ClusterStatus& status) {
             "master's log\n",
             count(status.dropped_messages), count(status.contradictions), count(status.caught_exceptions));
     }
+    if (status.refused_handshakes > 0)
+        std::printf("%llu connections refused: their keys are not on the allow-list\n",
+                    count(status.refused_handshakes));
+    std::printf("event loop: 99.9 %% of its steps within %.1f ms, the longest %.1f ms (%.1f ms of CPU time in %s)\n",
+                1e3 * step_seconds(status.loop, 0.999), 1e3 * status.loop.longest_step_seconds,
+                1e3 * status.loop.longest_cpu_seconds,
+                status.loop.longest_part.empty() ? "none" : status.loop.longest_part.c_str());
     if (const session::SceneStatus& live = status.scene; !live.title.empty()) {
         std::printf("%s '%s': %u members, %u views, %llu edits, %llu transactions\n",
                     live.exclusive ? "exclusive scene" : "live scene", live.title.c_str(), live.members,

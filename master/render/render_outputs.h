@@ -8,10 +8,10 @@
 #include <variant>
 #include <vector>
 
+#include "master/peers/encoded_scene.h"
 #include "master/render/frame_assembler.h"
 #include "master/render/output_reconstruction.h"
 #include "master/render/reconstruction.h"
-#include "master/scene/scene_encoder.h"
 #include "mediator/net/channel.h"
 
 namespace tessera::master {

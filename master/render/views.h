@@ -57,6 +57,9 @@ class Views {
     }
     std::size_t frames_in_flight(SessionId session) const { return delivery_.in_flight(session); }
 
+    std::optional<ViewId> watched(SessionId session, std::uint64_t number) const {
+        return delivery_.watched(session, number);
+    }
     void taken(SessionId session, const wire::FrameTaken& taken) { delivery_.taken(session, taken); }
     void pick(SessionId session, const wire::Pick& request, Version version);
     // On a timeout its views are kept for a while: frames whose end it waits for as jobs, which others can fetch.

@@ -4,18 +4,11 @@
 #include <functional>
 #include <memory>
 
+#include "master/peers/encoded_scene.h"
 #include "mediator/base/task_thread.h"
-#include "mediator/scene/blob.h"
 #include "mediator/scene/change_list.h"
 
 namespace tessera::master {
-
-// A change list as nodes and clients receive it.
-struct EncodedScene {
-    std::uint64_t job = 0;
-    Version from, to;
-    scene::BlobPtr blob;  // null: there was no memory for it
-};
 
 // Makes, encodes and hashes long change lists on a thread of its own: for 300,000 objects that takes seconds, which the
 // event loop does not have.

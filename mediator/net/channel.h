@@ -41,6 +41,12 @@ using Received = std::variant<Message, NoMessage>;
 
 // Moves messages between one server and many clients. All calls from one thread, except wake(). ZeroMQ and the loopback
 // pass the same contract tests.
+// Connections and messages that a server refused before anyone saw them.
+struct RefusedTraffic {
+    std::uint64_t handshakes = 0;  // of keys that are not on the allow-list
+    std::uint64_t messages = 0;    // of revoked keys, or malformed
+};
+
 class Channel {
   public:
     virtual ~Channel() = default;

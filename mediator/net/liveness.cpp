@@ -37,6 +37,10 @@ Duration Liveness::next_backoff() {
     return now;
 }
 
+void Liveness::was_deaf(Duration time, TimePoint now) {
+    last_heard_ = std::min(now, last_heard_ + time);
+}
+
 void Liveness::restarted(TimePoint now) {
     last_heard_ = now;
 }

@@ -23,6 +23,8 @@ class Liveness {
 
     // After a timeout: doubles from min_backoff to max_backoff until on_message() resets it.
     Duration next_backoff();
+    // This process did not listen for that long: the peer's silence counts less.
+    void was_deaf(Duration time, TimePoint now);
     void restarted(TimePoint now);  // sockets are new; silence counts from here
 
   private:

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mediator/display/display.h"
+#include "mediator/session/loop_status.h"
 #include "mediator/session/node_phase.h"
 #include "mediator/session/view_summary.h"
 
@@ -121,6 +122,8 @@ struct ClusterStatus {
     DisplayStatus display;
     std::uint64_t contradictions = 0;     // nodes of one kind gave different bits for the same samples
     std::uint64_t caught_exceptions = 0;  // in the master's event loop: bugs, which it survived
+    std::uint64_t refused_handshakes = 0;  // connections whose key is not on the allow-list
+    LoopStatus loop;
     static constexpr auto describe(auto row) {
         using Self = ClusterStatus;
         return std::tuple(row(1, "software", &Self::software), row(2, "version", &Self::version),
@@ -132,7 +135,9 @@ struct ClusterStatus {
                           row(12, "scene", &Self::scene), row(13, "resyncs", &Self::resyncs),
                           row(14, "display", &Self::display),
                           row(15, "contradictions", &Self::contradictions),
-                          row(16, "caught_exceptions", &Self::caught_exceptions));
+                          row(16, "caught_exceptions", &Self::caught_exceptions),
+                          row(17, "refused_handshakes", &Self::refused_handshakes),
+                          row(18, "loop", &Self::loop));
     }
 };
 

@@ -43,6 +43,13 @@ class LoopbackCluster {
                                             net::Role role = net::Role::Editor);
     // A client controlled by the test.
     std::unique_ptr<net::Channel> channel(net::Role role) { return hub_.client(role); }
+    std::unique_ptr<net::Channel> channel(net::Role role, const std::string& user) {
+        return hub_.client(role, user);
+    }
+    // The master's loop is away for so long, from now on.
+    void stall(Duration time) {
+        master_->post([time](net::Channel&) { std::this_thread::sleep_for(time); });
+    }
     std::vector<std::string> events() const;
 
   private:

@@ -51,6 +51,18 @@ TEST(Liveness, TimesOutAfterAllMissedIntervals) {
 }
 
 // A loop that sleeps until next_event() must find something to do then, or it spins.
+TEST(Liveness, SilenceDoesNotCountWhileNobodyListened) {
+    const LivenessSettings settings{.interval = std::chrono::seconds(1), .missed = 3};
+    const TimePoint start{std::chrono::hours(1)};
+    Liveness liveness(settings, start);
+    const TimePoint later = start + std::chrono::seconds(10);
+    liveness.was_deaf(std::chrono::seconds(8), later);
+    EXPECT_FALSE(liveness.timed_out(later)) << "2 s of silence";
+    EXPECT_TRUE(liveness.timed_out(later + std::chrono::seconds(1)));
+    liveness.was_deaf(std::chrono::hours(1), later);
+    EXPECT_TRUE(liveness.timed_out(later + std::chrono::seconds(3))) << "it is never ahead of the time";
+}
+
 TEST(Liveness, NextEventIsTheFirstTimeThatSomethingIsDue) {
     Liveness liveness(Settings, at(0s));
     liveness.sent_heartbeat(at(0s));
