@@ -19,7 +19,7 @@ class Guard {
     Guard(const Clock& clock, EventSink events, LoopMonitor& monitor)
         : clock_(clock), events_(std::move(events)), monitor_(monitor) {}
 
-    // `what`: the part, for the log. Returns whether it ended without an exception.
+    // `what`: the part, for the log. Returns whether it ended without an exception. Its CPU time is measured.
     template <class Part>
     bool run(std::string_view what, const Part& part) {
         const Duration before = LoopMonitor::thread_cpu_time();
@@ -27,13 +27,7 @@ class Guard {
         monitor_.ran(what, LoopMonitor::thread_cpu_time() - before);
         return good;
     }
-    std::uint64_t caught() const { return caught_; }
-
-  private:
-    struct Recent {
-        TimePoint logged{};
-        std::uint64_t silent = 0;  // since then
-    };
+    // The same, not measured.
     template <class Part>
     bool attempt(std::string_view what, const Part& part) {
         try {
@@ -46,6 +40,13 @@ class Guard {
         }
         return false;
     }
+    std::uint64_t caught() const { return caught_; }
+
+  private:
+    struct Recent {
+        TimePoint logged{};
+        std::uint64_t silent = 0;  // since then
+    };
     void caught(std::string_view what, const char* problem);
 
     const Clock& clock_;

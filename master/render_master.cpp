@@ -72,7 +72,7 @@ void RenderMaster::run(std::stop_token stop) {
     const std::stop_callback wake_on_stop(stop, [this] { channel_->wake(); });
     while (!stop.stop_requested()) {
         // Receiving can fail as well: the link, not a message.
-        if (!guard_.run("the event loop", [&] { step(clock_.now(), stop); }))
+        if (!guard_.attempt("the event loop", [&] { step(clock_.now(), stop); }))
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     guard_.run("writing the last checkpoint", [&] { save_at_the_end(); });
@@ -121,7 +121,7 @@ void RenderMaster::step(TimePoint now, std::stop_token stop) {
 // Film goes to its thread at once; other messages wait for their turn.
 bool RenderMaster::take_in(net::Received received) {
     constexpr int BurstLimit = 256;  // so that nothing else is delayed
-    for (int i = 0; i < BurstLimit; ++i) {
+    for (int taken = 1;; ++taken) {
         auto* message = std::get_if<net::Message>(&received);
         if (message == nullptr) return true;
         const TimePoint now = clock_.now();
@@ -131,7 +131,8 @@ bool RenderMaster::take_in(net::Received received) {
             // It is a sign of life, even if it has to wait.
             const bool is_control = message->link == net::Link::Control;
             if (!intake_.empty()) {
-                if (NodeRecord* node = is_control ? nodes_.by_control(message->peer) : nodes_.by_bulk(message->peer))
+                if (NodeRecord* node =
+                        is_control ? nodes_.by_control(message->peer) : nodes_.by_bulk(message->peer))
                     node->liveness.on_message(now);
                 if (SessionRecord* session =
                         is_control ? sessions_.by_control(message->peer) : sessions_.by_bulk(message->peer))
@@ -139,9 +140,9 @@ bool RenderMaster::take_in(net::Received received) {
             }
             if (!intake_.put(*message)) drop(*message, "too many messages of this key wait");
         }
-        received = channel_->receive(now);  // only what has already arrived
+        if (taken == BurstLimit) return false;
+        received = channel_->receive(TimePoint{});  // only what has already arrived
     }
-    return false;
 }
 
 void RenderMaster::serve_messages(TimePoint begun, const std::stop_token& stop) {
@@ -301,7 +302,8 @@ std::string RenderMaster::full_text(bool is_node, const net::Message& message) c
     constexpr const char* Full = "the master is full: try again later";
     if (is_node) return nodes_.all().size() >= settings_.max_nodes ? Full : "";
     const bool is_operator = message.role == net::Role::Operator;
-    const std::size_t reserved = is_operator ? 0 : std::min(settings_.sessions_for_operators, settings_.max_sessions);
+    const std::size_t reserved =
+        is_operator ? 0 : std::min(settings_.sessions_for_operators, settings_.max_sessions);
     if (sessions_.all().size() >= settings_.max_sessions - reserved) return Full;
     const auto same_key = std::ranges::count_if(
         sessions_.all(), [&](const auto& entry) { return entry.second.user == message.user; });

@@ -34,7 +34,8 @@ struct MasterSettings {
     std::size_t max_sessions = 256, max_nodes = 1024;
     std::size_t max_sessions_per_key = 64;
     std::size_t sessions_for_operators = 8;  // of max_sessions: others cannot lock them out
-    std::function<net::RefusedTraffic()> refused_traffic = {};  // by the channel, for the status; none: unknown
+    std::function<net::RefusedTraffic()> refused_traffic =
+        {};  // by the channel, for the status; none: unknown
 };
 
 // The event loop: one thread that owns the channel, sends heartbeats and dispatches messages. It never renders
@@ -56,7 +57,8 @@ class RenderMaster {
     bool take_in(net::Received received);  // false: more messages may have arrived
     void serve_messages(TimePoint begun, const std::stop_token& stop);
     void forgive_silence(Duration time, TimePoint now);
-    std::string full_text(bool is_node, const net::Message& message) const;  // why no more can join; "" = they can
+    std::string full_text(bool is_node,
+                          const net::Message& message) const;  // why no more can join; "" = they can
     void run_posted();
     void receive(net::Message&& message, TimePoint now);
     void control(net::Message& message, TimePoint now);

@@ -38,7 +38,7 @@ net::Bytes fitting(wire::Members reply) {
 // Why a viewer may not open this view: viewers share the cluster with those who edit. "" = it may.
 std::string SceneSession::viewer_problem(const SessionRecord& session, std::uint64_t number,
                                          const session::ViewRequest& wanted) const {
-    constexpr std::size_t MaxViews = 8;                           // of all viewers of a key
+    constexpr std::size_t MaxViews = 8;                          // of all viewers of a key
     constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 25;  // in all; 8K
     constexpr std::uint64_t MaxSpp = 65536;
     if (session.role != net::Role::Viewer) return {};
@@ -51,7 +51,8 @@ std::string SceneSession::viewer_problem(const SessionRecord& session, std::uint
         ++views;
         pixels += view.request.view.window.pixel_count();
     }
-    if (views > MaxViews) return "viewers of this key have 8 views already: close some, or watch one by its name";
+    if (views > MaxViews)
+        return "viewers of this key have 8 views already: close some, or watch one by its name";
     if (pixels > MaxPixels) return "the views of this viewer's key would have more than 33 million pixels";
     return {};
 }

@@ -33,7 +33,8 @@ Json loop_value(const session::LoopStatus& loop) {
     Json steps = Json::array();
     for (std::size_t i = 0; i < loop.steps.size(); ++i) {
         const bool is_last = i >= session::LoopStatus::Bounds.size();
-        steps.push_back({{"seconds", is_last ? Json() : Json(session::LoopStatus::Bounds[i])}, {"count", loop.steps[i]}});
+        steps.push_back(
+            {{"seconds", is_last ? Json() : Json(session::LoopStatus::Bounds[i])}, {"count", loop.steps[i]}});
     }
     return {{"steps", steps},
             {"longest_step_seconds", loop.longest_step_seconds},
@@ -167,10 +168,11 @@ void print_table(const session::ClusterStatus& status) {
     if (status.refused_handshakes > 0)
         std::printf("%llu connections refused: their keys are not on the allow-list\n",
                     count(status.refused_handshakes));
-    std::printf("event loop: 99.9 %% of its steps within %.1f ms, the longest %.1f ms (%.1f ms of CPU time in %s)\n",
-                1e3 * step_seconds(status.loop, 0.999), 1e3 * status.loop.longest_step_seconds,
-                1e3 * status.loop.longest_cpu_seconds,
-                status.loop.longest_part.empty() ? "none" : status.loop.longest_part.c_str());
+    std::printf(
+        "event loop: 99.9 %% of its steps within %.1f ms, the longest %.1f ms (%.1f ms of CPU time in %s)\n",
+        1e3 * step_seconds(status.loop, 0.999), 1e3 * status.loop.longest_step_seconds,
+        1e3 * status.loop.longest_cpu_seconds,
+        status.loop.longest_part.empty() ? "none" : status.loop.longest_part.c_str());
     if (const session::SceneStatus& live = status.scene; !live.title.empty()) {
         std::printf("%s '%s': %u members, %u views, %llu edits, %llu transactions\n",
                     live.exclusive ? "exclusive scene" : "live scene", live.title.c_str(), live.members,

@@ -25,7 +25,8 @@ std::string escaped(const std::string& text) {
         const auto byte = static_cast<unsigned char>(text[i]);
         const bool is_control = byte < 0x20 || byte == 0x7f;
         // U+0080 to U+009F are C2 80 to C2 9F; terminals obey some of them.
-        const bool is_c1 = byte == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
+        const bool is_c1 =
+            byte == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
         if (is_control) {
             put_escaped(out, byte);
         } else if (is_c1) {

@@ -120,24 +120,23 @@ struct ClusterStatus {
     SceneStatus scene;
     std::uint64_t resyncs = 0;  // times that a node had to be sent the whole scene again
     DisplayStatus display;
-    std::uint64_t contradictions = 0;     // nodes of one kind gave different bits for the same samples
-    std::uint64_t caught_exceptions = 0;  // in the master's event loop: bugs, which it survived
+    std::uint64_t contradictions = 0;      // nodes of one kind gave different bits for the same samples
+    std::uint64_t caught_exceptions = 0;   // in the master's event loop: bugs, which it survived
     std::uint64_t refused_handshakes = 0;  // connections whose key is not on the allow-list
     LoopStatus loop;
     static constexpr auto describe(auto row) {
         using Self = ClusterStatus;
-        return std::tuple(row(1, "software", &Self::software), row(2, "version", &Self::version),
-                          row(3, "uptime_seconds", &Self::uptime_seconds), row(4, "blobs", &Self::blobs),
-                          row(5, "blob_bytes", &Self::blob_bytes), row(6, "sessions", &Self::sessions),
-                          row(7, "queued", &Self::queued),
-                          row(8, "dropped_messages", &Self::dropped_messages), row(9, "units", &Self::units),
-                          row(10, "wire_bytes", &Self::wire_bytes), row(11, "nodes", &Self::nodes),
-                          row(12, "scene", &Self::scene), row(13, "resyncs", &Self::resyncs),
-                          row(14, "display", &Self::display),
-                          row(15, "contradictions", &Self::contradictions),
-                          row(16, "caught_exceptions", &Self::caught_exceptions),
-                          row(17, "refused_handshakes", &Self::refused_handshakes),
-                          row(18, "loop", &Self::loop));
+        return std::tuple(
+            row(1, "software", &Self::software), row(2, "version", &Self::version),
+            row(3, "uptime_seconds", &Self::uptime_seconds), row(4, "blobs", &Self::blobs),
+            row(5, "blob_bytes", &Self::blob_bytes), row(6, "sessions", &Self::sessions),
+            row(7, "queued", &Self::queued), row(8, "dropped_messages", &Self::dropped_messages),
+            row(9, "units", &Self::units), row(10, "wire_bytes", &Self::wire_bytes),
+            row(11, "nodes", &Self::nodes), row(12, "scene", &Self::scene),
+            row(13, "resyncs", &Self::resyncs), row(14, "display", &Self::display),
+            row(15, "contradictions", &Self::contradictions),
+            row(16, "caught_exceptions", &Self::caught_exceptions),
+            row(17, "refused_handshakes", &Self::refused_handshakes), row(18, "loop", &Self::loop));
     }
 };
 

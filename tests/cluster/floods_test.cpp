@@ -27,8 +27,9 @@ struct Floods : testing::Test {
     }
     void paint(float red) {
         const scene::Material material{.base_color = {red, 0, 0, 1}};
-        const auto result = ann->submit({scene::Update{
-            ObjectId{first.value + 1}, scene::Fields<scene::Material>(&scene::Material::base_color).bits(), material}});
+        const auto result = ann->submit(
+            {scene::Update{ObjectId{first.value + 1},
+                           scene::Fields<scene::Material>(&scene::Material::base_color).bits(), material}});
         ASSERT_TRUE(result.accepted) << result.problems.at(0);
     }
     std::size_t events_with(const std::string& part) const {
@@ -101,12 +102,14 @@ TEST_F(Floods, AKeyHasSoManySessionsAndOperatorsAlwaysGetIn) {
         peers.back().send(wire::Hello{.name = "eve"});
     }
     for (RawPeer& peer : peers) {
-        while (peer.received<wire::Welcome>() == nullptr && peer.received<wire::Refusal>() == nullptr) peer.poll();
+        while (peer.received<wire::Welcome>() == nullptr && peer.received<wire::Refusal>() == nullptr)
+            peer.poll();
         ++(peer.received<wire::Welcome>() ? welcome : refused);
     }
     EXPECT_EQ(welcome, 64u);
     EXPECT_EQ(refused, 6u);
-    RawPeer other(cluster.channel(net::Role::Viewer, "other")), boss(cluster.channel(net::Role::Operator, "boss"));
+    RawPeer other(cluster.channel(net::Role::Viewer, "other")),
+        boss(cluster.channel(net::Role::Operator, "boss"));
     EXPECT_TRUE(other.connect("other"));
     EXPECT_TRUE(boss.connect("boss"));
 }

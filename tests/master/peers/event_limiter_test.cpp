@@ -18,7 +18,10 @@ TEST(EventLimiterTest, TextsOfPeersCannotForgeLinesOrMoveTheCursor) {
     EXPECT_EQ(escaped("node \x1b[2J a\nmaster: all is well\r\x7f"),
               "node \\x1b[2J a\\x0amaster: all is well\\x0d\\x7f");
     EXPECT_EQ(escaped("M\xc3\xbcller \xe2\x82\xac"), "M\xc3\xbcller \xe2\x82\xac") << "UTF-8 is kept";
-    EXPECT_EQ(escaped("csi \xc2\x9b" "31m"), "csi \\xc2\\x9b31m") << "as are none of its control characters";
+    EXPECT_EQ(escaped("csi \xc2\x9b"
+                      "31m"),
+              "csi \\xc2\\x9b31m")
+        << "as are none of its control characters";
     EXPECT_LT(escaped(std::string(100000, '\n')).size(), 2100u);
 }
 
