@@ -16,7 +16,8 @@ std::optional<int> parse_options(int argc, const char* const* argv, MasterOption
     line.flag("--insecure", "no encryption and no roles; only on a loopback address", options.insecure);
     line.option("--heartbeat", "seconds between heartbeats; a peer that misses three is removed",
                 options.heartbeat_seconds);
-    line.option("--blob-quota", "MiB of meshes and textures one session may send", options.blob_quota_mib);
+    line.option("--blob-quota", "MiB of meshes and textures that the master holds for the clients of one key",
+                options.blob_quota_mib);
     line.option("--session",
                 "folder that stores the live scene: edits, and checkpoints with the films; a "
                 "master started with it resumes the session",

@@ -14,7 +14,7 @@ struct MasterOptions {
     std::string keys;  // a folder; "" only with `insecure`
     bool insecure = false;
     double heartbeat_seconds = 1.0;
-    std::uint64_t blob_quota_mib = 16384;  // per session
+    std::uint64_t blob_quota_mib = 16384;  // per key
     std::string session;                   // folder; "" = live scenes end with the master
     double checkpoint_seconds = 10.0;
     double orphan_seconds = 600.0;

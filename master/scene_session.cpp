@@ -20,6 +20,7 @@ SceneSession::SceneSession(std::uint64_t epoch, const ViewSettings& settings, co
       encoder_([&outputs = services.render.outputs](EncodedScene made) { outputs.put(std::move(made)); }),
       distributor_(authority_, encoder_, *services.blobs, services.outbox, services.events),
       reads_(authority_, encoder_, *services.blobs, services.sessions, services.outbox),
+      collector_(services.blobs, services.collect_interval),
       views_(settings, services.render, services.sessions, services.outbox, services.events,
              [this](ObjectId id) {
                  const scene::Object* object = authority_.scene().find(id);
@@ -354,6 +355,7 @@ void SceneSession::take(RenderOutput& output, TimePoint now) {
 // nodes and frames for clients.
 void SceneSession::tick(TimePoint now) {
     keep_journal(now);
+    collector_.tick(authority_, now);
     close_when_left(now);
     if (open_) {
         publish_if_due(now);

@@ -11,6 +11,7 @@
 #include "master/peers/node_table.h"
 #include "master/peers/session_table.h"
 #include "master/render/views.h"
+#include "master/scene/blob_collector.h"
 #include "master/scene/edit_trace.h"
 #include "master/scene/scene_authority.h"
 #include "master/scene/scene_distributor.h"
@@ -28,6 +29,7 @@ struct MasterServices {
     RenderServices render;
     JobStore& jobs;
     EventSink events;
+    Duration collect_interval;  // of unused blobs; see blob_collector.h
 };
 
 // Everything that belongs to one scene: content, edit history, replicas on nodes, views, display, files on disk,
@@ -48,6 +50,7 @@ class SceneSession {
     const SceneAuthority& authority() const { return authority_; }
     SceneDistributor& distributor() { return distributor_; }
     const SceneDistributor& distributor() const { return distributor_; }
+    BlobCollector& collector() { return collector_; }
     Views& views() { return views_; }
     const Views& views() const { return views_; }
     DisplayService& display() { return display_; }
@@ -148,6 +151,7 @@ class SceneSession {
     SceneEncoder encoder_;
     SceneDistributor distributor_;
     SceneReads reads_;
+    BlobCollector collector_;
     Views views_;
     DisplayService display_;
     std::optional<SessionJournal> journal_;

@@ -92,14 +92,31 @@ void SessionService::refuse_edit(SessionRecord& session, std::uint64_t sequence,
                                                                 .problems = listed({std::move(problem)})}});
 }
 
+void SessionService::want(SessionRecord& session, const scene::BlobRef& blob) {
+    std::uint64_t bytes = scene_.collector().held_bytes(session.user);
+    for (const auto& [id, other] : sessions_.all()) {
+        if (other.user == session.user) bytes += other.fetcher.wanted_bytes();
+    }
+    if (bytes + blob.byte_size > quota_) {
+        throw Error(ErrorCode::Refused,
+                    "the meshes and textures of this key would take " +
+                        std::to_string((bytes + blob.byte_size) >> 20) + " MiB, more than its quota of " +
+                        std::to_string(quota_ >> 20) +
+                        ": remove some from the scene, or raise --blob-quota of the master");
+    }
+    if (auto wanted = session.fetcher.want(blob); !wanted) throw wanted.error();
+}
+
+void SessionService::request_blobs(SessionRecord& session, TimePoint now) {
+    if (!session.bulk) return;
+    for (const wire::BlobRequest& request : session.fetcher.due(now)) outbox_.bulk(*session.bulk, request);
+}
+
 bool SessionService::blobs_are_here(SessionRecord& session, SessionRecord::PendingEdit& pending) {
-    const auto want = [&](const scene::BlobRef& blob) {
-        if (auto wanted = session.fetcher.want(blob); !wanted) throw wanted.error();
-    };
     if (pending.encoded) {
         const scene::BlobPtr blob = blobs_->find(pending.encoded->hash);
         if (!blob) {
-            want(*pending.encoded);
+            want(session, *pending.encoded);
             return false;
         }
         auto decoded = wire::decode_edit(blob->bytes());
@@ -111,7 +128,7 @@ bool SessionService::blobs_are_here(SessionRecord& session, SessionRecord::Pendi
         pending.encoded.reset();
     }
     const std::vector<scene::BlobRef> missing = scene_.authority().missing_blobs(pending.edit);
-    for (const scene::BlobRef& blob : missing) want(blob);
+    for (const scene::BlobRef& blob : missing) want(session, blob);
     return missing.empty();
 }
 
@@ -142,8 +159,8 @@ void SessionService::advance(SessionRecord& session, TimePoint now) {
         session.edits.pop_front();
     }
     if (session.opening) advance_display(session, now);
-    if (!session.bulk) return;
-    for (const wire::BlobRequest& request : session.fetcher.due(now)) outbox_.bulk(*session.bulk, request);
+    if (session.edits.empty() && !session.opening) session.fetcher.release_completed();
+    request_blobs(session, now);
 }
 
 void SessionService::open_display(SessionRecord& session, const wire::OpenDisplay& request, TimePoint now) {
@@ -157,7 +174,7 @@ void SessionService::advance_display(SessionRecord& session, TimePoint now) {
         const auto here = [&](const scene::BlobRef& blob) {
             scene::BlobPtr found = blobs_->find(blob.hash);
             if (found) return found;
-            if (auto wanted = session.fetcher.want(blob); !wanted) throw wanted.error();
+            want(session, blob);
             return found;
         };
         const scene::BlobPtr description = here(session.opening->description);
@@ -186,8 +203,13 @@ void SessionService::advance_display(SessionRecord& session, TimePoint now) {
 void SessionService::chunk(SessionRecord& session, wire::BlobChunk&& chunk, TimePoint now) {
     outbox_.bytes.blobs += chunk.data.size();
     // A wrong chunk is requested again; a session that keeps sending them only delays itself.
+    const scene::BlobRef blob{chunk.hash, chunk.total};
+    const std::uint64_t wanted = session.fetcher.wanted_bytes();
     (void)session.fetcher.receive(std::move(chunk), now);
-    advance(session, now);
+    if (session.fetcher.wanted_bytes() < wanted) scene_.collector().received(session.user, blob);
+    // An edit of 100,000 objects is not looked through again for each of its blobs.
+    if (session.fetcher.idle()) return advance(session, now);
+    request_blobs(session, now);
 }
 
 void SessionService::absent(SessionRecord& session, const wire::BlobAbsent& absent, TimePoint now) {
@@ -237,7 +259,7 @@ void SessionService::tick(TimePoint now) {
         outbox_.control(session.control, wire::SceneJoined{.version = {}, .queue_position = place});
     }
     for (auto& [id, session] : sessions_.all()) {
-        if (!session.fetcher.idle()) advance(session, now);
+        if (!session.fetcher.idle()) request_blobs(session, now);
     }
 }
 

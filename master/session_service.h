@@ -8,9 +8,10 @@ namespace tessera::master {
 // Serves clients: the queue for the scene, edits and their blobs. RenderMaster passes messages to it.
 class SessionService {
   public:
-    SessionService(std::shared_ptr<scene::BlobStore> blobs, SessionTable& sessions, SceneSession& scene,
-                   Outbox& outbox)
-        : blobs_(std::move(blobs)), sessions_(sessions), scene_(scene), outbox_(outbox) {}
+    // `quota`: bytes of blobs that the clients of a key may have the master hold.
+    SessionService(std::shared_ptr<scene::BlobStore> blobs, std::uint64_t quota, SessionTable& sessions,
+                   SceneSession& scene, Outbox& outbox)
+        : blobs_(std::move(blobs)), quota_(quota), sessions_(sessions), scene_(scene), outbox_(outbox) {}
 
     void join_scene(SessionRecord& session, const wire::JoinScene& request, TimePoint now);
     void close_scene(SessionRecord& session, const wire::CloseScene& request, TimePoint now);
@@ -25,7 +26,9 @@ class SessionService {
     void tick(TimePoint now);  // admits queued clients, requests chunks
 
   private:
-    void advance(SessionRecord& session, TimePoint now);  // applies edits whose blobs have arrived
+    void advance(SessionRecord& session, TimePoint now);            // applies edits whose blobs have arrived
+    void want(SessionRecord& session, const scene::BlobRef& blob);  // throws Error over a limit
+    void request_blobs(SessionRecord& session, TimePoint now);
     bool blobs_are_here(SessionRecord& session, SessionRecord::PendingEdit& edit);
     void advance_display(SessionRecord& session, TimePoint now);
     void refuse_edit(SessionRecord& session, std::uint64_t sequence, std::string problem);
@@ -33,6 +36,7 @@ class SessionService {
     std::string busy_text() const;
 
     std::shared_ptr<scene::BlobStore> blobs_;
+    std::uint64_t quota_;
     SessionTable& sessions_;
     SceneSession& scene_;
     Outbox& outbox_;

@@ -27,6 +27,7 @@ EmbeddedCluster::EmbeddedCluster(const EmbeddedSettings& settings, std::shared_p
       }) {
     master::MasterSettings master_settings{.software = "tessera " + cli::version()};
     master_settings.liveness.missed = PatientHeartbeats;
+    master_settings.collect_interval = Duration::zero();  // the store is also the client's and the nodes'
     master_ = std::make_unique<master::RenderMaster>(
         net::make_zmq_server(context_, {.endpoint = Endpoint, .keys = {}}), blobs, clock, master_settings,
         events_);

@@ -2,25 +2,22 @@
 
 namespace tessera::scene {
 
-namespace {
-constexpr std::size_t ReadablePadding = 16;
-}
-
 Blob::Blob(std::span<const std::byte> data)
     : storage_(data.begin(), data.end()), byte_size_(data.size()), hash_(blake2b(data)) {
-    storage_.resize(byte_size_ + ReadablePadding);
+    storage_.resize(byte_size_ + Padding);
 }
 
 Blob::Blob(std::vector<std::byte> data, const Hash256& hash)
     : storage_(std::move(data)), byte_size_(storage_.size()), hash_(hash) {
-    storage_.resize(byte_size_ + ReadablePadding);
+    storage_.resize(byte_size_ + Padding);
 }
 
 BlobPtr BlobStore::insert(BlobPtr blob) {
     const std::scoped_lock lock(mutex_);
-    const auto [it, inserted] = blobs_.try_emplace(blob->hash(), blob);
+    const auto [it, inserted] = blobs_.try_emplace(blob->hash(), Entry{blob, mark_});
     if (inserted) byte_size_ += blob->bytes().size();
-    return it->second;
+    it->second.used = mark_;
+    return it->second.blob;
 }
 
 BlobPtr BlobStore::insert(std::span<const std::byte> data) {
@@ -30,18 +27,54 @@ BlobPtr BlobStore::insert(std::span<const std::byte> data) {
 BlobPtr BlobStore::find(const Hash256& hash) const {
     const std::scoped_lock lock(mutex_);
     const auto it = blobs_.find(hash);
-    return it == blobs_.end() ? nullptr : it->second;
+    if (it == blobs_.end()) return nullptr;
+    it->second.used = mark_;
+    return it->second.blob;
 }
 
 std::size_t BlobStore::erase_unused() {
     const std::scoped_lock lock(mutex_);
     std::size_t freed = 0;
     std::erase_if(blobs_, [&](const auto& entry) {
-        if (entry.second.use_count() > 1) return false;
-        freed += entry.second->bytes().size();
+        if (entry.second.blob.use_count() > 1) return false;
+        freed += entry.second.blob->bytes().size();
         return true;
     });
     byte_size_ -= freed;
+    return freed;
+}
+
+std::uint64_t BlobStore::mark() {
+    const std::scoped_lock lock(mutex_);
+    return ++mark_;
+}
+
+std::vector<BlobRef> BlobStore::erase_unused(const std::set<Hash256>& keep, std::uint64_t mark) {
+    constexpr std::size_t Slice = 256;  // others wait meanwhile
+    std::vector<BlobRef> freed;
+    std::vector<BlobPtr> garbage;  // freed without the lock: unmapping gigabytes takes long
+    Hash256 next{};
+    for (bool is_done = false; !is_done;) {
+        {
+            const std::scoped_lock lock(mutex_);
+            auto entry = blobs_.lower_bound(next);
+            for (std::size_t i = 0; i < Slice && entry != blobs_.end(); ++i) {
+                const bool is_unused = entry->second.used < mark && entry->second.blob.use_count() == 1 &&
+                                       !keep.contains(entry->first);
+                if (!is_unused) {
+                    ++entry;
+                    continue;
+                }
+                freed.push_back(reference(*entry->second.blob));
+                byte_size_ -= freed.back().byte_size;
+                garbage.push_back(std::move(entry->second.blob));
+                entry = blobs_.erase(entry);
+            }
+            is_done = entry == blobs_.end();
+            if (!is_done) next = entry->first;
+        }
+        garbage.clear();
+    }
     return freed;
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -18,6 +19,7 @@ namespace tessera::scene {
 // The data is followed by 16 readable zero bytes (Embree reads past the last vertex).
 class Blob {
   public:
+    static constexpr std::size_t Padding = 16;
     explicit Blob(std::span<const std::byte> data);          // copies once and hashes
     Blob(std::vector<std::byte> data, const Hash256& hash);  // moves; the caller has verified the hash
 
@@ -59,12 +61,21 @@ class BlobStore {
     BlobPtr insert(std::span<const std::byte> data);
     BlobPtr find(const Hash256& hash) const;  // null when absent
     std::size_t erase_unused();               // drops blobs that only the store holds; returns their bytes
+    // For a collector: what it finds in use after mark() it keeps; of the rest, blobs go that only the store holds and
+    // that were neither inserted nor found since. Returns them.
+    std::uint64_t mark();
+    std::vector<BlobRef> erase_unused(const std::set<Hash256>& keep, std::uint64_t mark);
     std::size_t byte_size() const;
     std::size_t count() const;
 
   private:
+    struct Entry {
+        BlobPtr blob;
+        std::uint64_t used = 0;  // the mark at the latest use
+    };
     mutable std::mutex mutex_;  // protects everything below
-    std::map<Hash256, BlobPtr> blobs_;
+    mutable std::map<Hash256, Entry> blobs_;
+    std::uint64_t mark_ = 0;
     std::size_t byte_size_ = 0;
 };
 

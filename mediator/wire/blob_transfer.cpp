@@ -24,7 +24,7 @@ Expected<void> BlobFetcher::want(const scene::BlobRef& blob) {
                            " bytes, more than the limit of " + std::to_string(limits_.bytes_per_blob));
     }
     if (wanted_bytes_ + blob.byte_size > limits_.bytes_total) {
-        return failure(ErrorCode::Refused, "the blobs of this session exceed its quota of " +
+        return failure(ErrorCode::Refused, "the blobs under way exceed the quota of " +
                                                std::to_string(limits_.bytes_total) +
                                                " bytes: raise --blob-quota");
     }
@@ -74,16 +74,23 @@ Expected<void> BlobFetcher::receive(BlobChunk&& chunk, TimePoint now) {
         return {};
     }
     received_bytes_ += chunk.data.size();
+    if (partial.data.empty()) {
+        partial.data.reserve(partial.total + scene::Blob::Padding);
+        partial.hash = std::make_unique<Blake2b>();
+    }
+    partial.hash->update(chunk.data);
     partial.data.insert(partial.data.end(), chunk.data.begin(), chunk.data.end());
     partial.requested = std::max<std::uint64_t>(partial.requested, partial.data.size());
     if (partial.data.size() < partial.total) return {};
-    if (blake2b(partial.data) != chunk.hash) {
+    if (partial.hash->finish() != chunk.hash) {
         partial.data = {};
         partial.requested = 0;
         return failure(ErrorCode::InvalidInput,
                        "blob " + to_hex(chunk.hash).substr(0, 12) + " has the wrong hash");
     }
-    store_->insert(std::make_shared<const scene::Blob>(std::move(partial.data), chunk.hash));
+    completed_.push_back(
+        store_->insert(std::make_shared<const scene::Blob>(std::move(partial.data), chunk.hash)));
+    wanted_bytes_ -= partial.total;
     partial_.erase(it);
     return {};
 }

@@ -16,7 +16,7 @@ namespace tessera::wire {
 
 struct BlobLimits {
     std::uint64_t bytes_per_blob = 4ull << 30;
-    std::uint64_t bytes_total = 16ull << 30;  // quota per peer
+    std::uint64_t bytes_total = 16ull << 30;  // under way from a peer at a time; held for a key
     std::uint32_t requests_in_flight = 8;     // requested chunks that have not arrived
     Duration retry_after = std::chrono::seconds(3);
 };
@@ -37,21 +37,28 @@ class BlobFetcher {
     void absent(const Hash256& hash);  // the peer does not have it
     void forget(const Hash256& hash);  // it is not wanted any more
     void forget_all();
+    // Completed blobs are held until then: no edit refers to them yet.
+    void release_completed() { completed_.clear(); }
     bool idle() const { return partial_.empty(); }
     std::vector<Hash256> absent_blobs() const;
     std::uint64_t received_bytes() const { return received_bytes_; }
+    std::uint64_t wanted_bytes() const { return wanted_bytes_; }  // of those that are not complete
 
   private:
     struct Partial {
         std::uint64_t total = 0;
-        std::vector<std::byte> data;  // grows with the received chunks, never ahead of them
-        std::uint64_t requested = 0;  // end of the requested range
+        // Reserved whole at the first chunk, which touches no memory: it is never copied, and only what has arrived is
+        // resident.
+        std::vector<std::byte> data;
+        std::unique_ptr<Blake2b> hash;  // of the data: as it arrives, since gigabytes take seconds
+        std::uint64_t requested = 0;    // end of the requested range
         TimePoint last_activity{};
         bool absent = false;
     };
     std::shared_ptr<scene::BlobStore> store_;
     BlobLimits limits_;
     std::map<Hash256, Partial> partial_;
+    std::vector<scene::BlobPtr> completed_;
     std::uint64_t wanted_bytes_ = 0, received_bytes_ = 0;
 };
 

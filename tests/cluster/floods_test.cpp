@@ -81,7 +81,7 @@ TEST_F(Floods, AClientReadsTheSceneOnceAtATime) {
     EXPECT_EQ(answers + refusals, 50u) << "each gets an answer";
 }
 
-TEST_F(Floods, AStallOfTheLoopRemovesNobody) {
+TEST_F(Floods, AStallOfTheLoopRemovesNoPeer) {
     cluster.add_node("null");
     const auto bob = cluster.member("bob", std::make_shared<scene::BlobStore>());
     for (int i = 0; i < 200 && ann->status().nodes.empty(); ++i) std::this_thread::sleep_for(10ms);

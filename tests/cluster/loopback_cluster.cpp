@@ -17,6 +17,7 @@ net::LivenessSettings quick_heartbeats() {
 LoopbackCluster::LoopbackCluster() : hub_(net::LoopbackHub::Limits{.messages_per_queue = 4096}) {
     master::MasterSettings settings{.software = "test"};
     settings.liveness = quick_heartbeats();
+    settings.collect_interval = std::chrono::milliseconds(50);
     settings.views.overdue_patience = std::chrono::seconds(1);
     master_ = std::make_unique<master::RenderMaster>(hub_.server(), std::make_shared<scene::BlobStore>(),
                                                      clock_, settings, [this](const master::Event& event) {

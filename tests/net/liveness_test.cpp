@@ -51,7 +51,7 @@ TEST(Liveness, TimesOutAfterAllMissedIntervals) {
 }
 
 // A loop that sleeps until next_event() must find something to do then, or it spins.
-TEST(Liveness, SilenceDoesNotCountWhileNobodyListened) {
+TEST(Liveness, SilenceDoesNotCountWhileThisProcessDidNotListen) {
     const LivenessSettings settings{.interval = std::chrono::seconds(1), .missed = 3};
     const TimePoint start{std::chrono::hours(1)};
     Liveness liveness(settings, start);
