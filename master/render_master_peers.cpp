@@ -218,7 +218,8 @@ session::ClusterStatus RenderMaster::status(TimePoint now) const {
             .samples_per_second = dispatcher_.rate(id) * std::max(1u, node.hello.concurrent_units),
             .round_trip_seconds = node.round_trip_seconds,
             .stuck = node.stuck,
-            .quarantine = {}};
+            .quarantine = {},
+            .idle_reason = dispatcher_.idle_reason(node)};
         if (const auto* held = dispatcher_.quarantine().find(node.identity(), now)) {
             entry.quarantine = held->reason;
             entry.quarantine_seconds = seconds(*held->until - now);

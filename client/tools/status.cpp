@@ -87,6 +87,7 @@ std::string as_json(const session::ClusterStatus& status) {
                          {"stuck", node.stuck},
                          {"quarantine", node.quarantine.empty() ? Json() : Json(node.quarantine)},
                          {"quarantine_seconds", node.quarantine_seconds},
+                         {"idle_reason", node.idle_reason.empty() ? Json() : Json(node.idle_reason)},
                          {"clock_offset_seconds", node.clock_offset_seconds},
                          {"clock_bound_seconds", node.clock_bound_seconds}});
     }
@@ -168,6 +169,7 @@ void print_table(const session::ClusterStatus& status) {
         if (!node.quarantine.empty())
             std::printf("  in quarantine for %.0f s: %s; tessera node release %s ends it\n",
                         node.quarantine_seconds, node.quarantine.c_str(), node.summary.name.c_str());
+        if (!node.idle_reason.empty()) std::printf("  takes no part: %s\n", node.idle_reason.c_str());
     }
 }
 

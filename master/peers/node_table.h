@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,7 @@ struct NodeRecord {
     std::uint64_t last_progress = 0;  // for stuck detection
     TimePoint last_progress_at{};
     bool stuck = false;
+    std::set<std::string> announced;  // why it takes no part, each reason once
 
     Quarantine::Key identity() const { return {user, hello.name}; }
 

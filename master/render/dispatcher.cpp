@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "master/peers/suitable_nodes.h"
-
 namespace tessera::master {
 
 namespace {
@@ -89,74 +87,7 @@ Dispatcher::Active* Dispatcher::holder(UnitId unit) {
     return unit.value - first.value < UnitsPerPass ? active(pass) : nullptr;
 }
 
-// ---- nodes ----
-
-bool Dispatcher::suits(const NodeRecord& node, const view::View& view,
-                       const NodeRequirements& requirements) const {
-    return master::suits(node, view, requirements.version) &&
-           (!requirements.reproducible || node.hello.reproducible);
-}
-
-bool Dispatcher::ready(const NodeRecord& node, const view::View& view,
-                       const NodeRequirements& requirements) const {
-    return suits(node, view, requirements) && master::ready(node, view, requirements.version);
-}
-
-std::vector<NodeCapacity> Dispatcher::capacities() const {
-    std::vector<NodeCapacity> capacities;
-    for (const auto& [id, node] : nodes_.all()) capacities.push_back(node.capacity());
-    return capacities;
-}
-
-void Dispatcher::deal(ViewId id, std::vector<NodeCapacity>& capacities, TimePoint now) {
-    Active* pass = active(id);
-    if (pass == nullptr) return;
-    // A node that fails much gets no more until it is known whose fault that is, unless all do.
-    constexpr std::uint32_t MaxUnexplained = 3;
-    std::vector<NodeCapacity> suitable, suspect;
-    for (const NodeCapacity& capacity : capacities) {
-        if (!ready(*nodes_.find(capacity.node), pass->view, pass->requirements)) continue;
-        const bool fails = unexplained_failures(capacity.node) >= MaxUnexplained;
-        (fails ? suspect : suitable).push_back(capacity);
-    }
-    if (suitable.empty()) suitable = std::move(suspect);
-    if (suitable.empty()) return;
-    for (const Assignment& assignment : pass->scheduler.assign(suitable, balancer_, now)) {
-        NodeRecord& node = *nodes_.find(assignment.node);
-        if (auto opening = node.opening(pass->view, pass->hold_film))
-            outbox_.control(node.control, *std::move(opening));
-        node.pending[assignment.unit.id] = ++node.work_sequence;
-        outbox_.control(node.control, wire::Work{node.work_sequence, assignment.unit});
-        for (NodeCapacity& capacity : capacities) {
-            if (capacity.node != assignment.node) continue;
-            --capacity.free_slots;
-            ++capacity.in_flight;
-        }
-    }
-}
-
-Dispatcher::Prospects Dispatcher::prospects(const view::View& view,
-                                            const NodeRequirements& requirements) const {
-    Prospects prospects;
-    for (const auto& [id, node] : nodes_.all()) {
-        if (!suits(node, view, requirements)) continue;
-        ++prospects.suitable;
-        prospects.workers += std::max(1u, node.hello.concurrent_units);
-        prospects.building += node.state.phase == session::NodePhase::Building ? 1 : 0;
-        prospects.scene_bytes += node.state.scene_bytes;
-        const double rate = balancer_.rate(id);
-        double& slowest = prospects.slowest_worker;
-        if (rate > 0.0) slowest = slowest > 0.0 ? std::min(slowest, rate) : rate;
-        if (!ready(node, view, requirements)) continue;
-        ++prospects.ready;
-        prospects.samples_per_second += node.capacity().workers * rate;
-    }
-    return prospects;
-}
-
-std::string Dispatcher::obstacles(const view::View& view, Version version) const {
-    return master::obstacles(nodes_, view, version);
-}
+// ---- messages ----
 
 void Dispatcher::send_cancellations(const std::vector<Cancellation>& cancellations) {
     constexpr std::size_t PerMessage = 1024, MaxUnconfirmed = 4096;
@@ -188,6 +119,7 @@ void Dispatcher::collect_overdue(TimePoint now) {
             node.quarantined = false;
             events_({wire::Severity::Info, "node " + node.hello.name + " leaves quarantine"});
         }
+        announce_idle(node);
         if (passes_.empty()) continue;
         std::vector<UnitId> held;
         for (const auto& [view, pass] : passes_) {

@@ -19,7 +19,8 @@ namespace tessera::master {
 // Which nodes may render a pass.
 struct NodeRequirements {
     Version version;            // of the scene that they must hold
-    bool reproducible = false;  // only nodes pinned to AVX2
+    bool reproducible = false;  // only nodes of one kind, pinned to AVX2
+    std::string kind{};         // that one; "" = the kind that renders most, see leading_kind()
 };
 
 // Assigns the units of passes to nodes: deals units, takes back released, lost and orphaned ones, cancels those that
@@ -57,7 +58,14 @@ class Dispatcher {
         std::uint64_t scene_bytes = 0;    // that suitable nodes have received; grows while they sync
     };
     Prospects prospects(const view::View& view, const NodeRequirements& requirements) const;
-    std::string obstacles(const view::View& view, Version version) const;
+    // The kind whose suitable nodes, pinned to AVX2, render most together; "" = there is none.
+    std::string leading_kind(const view::View& view, Version version) const;
+    std::string kind(ViewId pass) const;  // of a reproducible pass, from its first unit on; else ""
+    // Why nodes cannot render the view, each reason with a final "; ". Empty if none is known.
+    std::string obstacles(const view::View& view, const NodeRequirements& requirements) const;
+    // Why the node gets no work of passes that it could render otherwise; "" = it does.
+    std::string idle_reason(const NodeRecord& node) const;
+    std::vector<std::string> left_out(ViewId pass) const;  // "node b (kind X) takes no part: ..."
     std::size_t node_count() const { return nodes_.all().size(); }
     double rate(NodeId node) const { return balancer_.rate(node); }  // pixel samples a second of one worker
 
@@ -105,6 +113,8 @@ class Dispatcher {
     Active* holder(UnitId unit);
     bool suits(const NodeRecord& node, const view::View& view, const NodeRequirements& requirements) const;
     bool ready(const NodeRecord& node, const view::View& view, const NodeRequirements& requirements) const;
+    std::string why_left_out(const NodeRecord& node, const Active& pass) const;
+    void announce_idle(NodeRecord& node);
     void send_cancellations(const std::vector<Cancellation>& cancellations);
     void confirm_cancelled(UnitId unit, TimePoint now);
     std::uint32_t unexplained_failures(NodeId node) const;

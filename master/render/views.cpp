@@ -241,7 +241,8 @@ bool Views::may_publish() const {
         const ViewState& view = entry.second;
         // Without a suitable node there is nothing to wait for.
         return view.awaiting_first_frame() &&
-               services_.dispatcher.prospects(view.request.view, {view.version, view.request.reproducible})
+               services_.dispatcher
+                       .prospects(view.request.view, {view.version, view.request.reproducible, view.run.kind})
                        .suitable > 0;
     });
 }

@@ -54,6 +54,7 @@ struct NodeStatus {
     double clock_offset_seconds = 0, clock_bound_seconds = 0;  // its clock minus the master's, +- bound
     std::string quarantine;                                    // why it gets no work; "" = it does
     double quarantine_seconds = 0;                             // until it does
+    std::string idle_reason;  // why it takes no part in what is rendered; "" = it may
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "summary", &NodeStatus::summary), row(2, "phase", &NodeStatus::phase),
                           row(3, "version", &NodeStatus::version),
@@ -64,7 +65,8 @@ struct NodeStatus {
                           row(8, "clock_offset_seconds", &NodeStatus::clock_offset_seconds),
                           row(9, "clock_bound_seconds", &NodeStatus::clock_bound_seconds),
                           row(10, "quarantine", &NodeStatus::quarantine),
-                          row(11, "quarantine_seconds", &NodeStatus::quarantine_seconds));
+                          row(11, "quarantine_seconds", &NodeStatus::quarantine_seconds),
+                          row(12, "idle_reason", &NodeStatus::idle_reason));
     }
 };
 

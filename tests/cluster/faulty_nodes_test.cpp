@@ -145,5 +145,37 @@ TEST_F(FaultyNodes, ATileThatNoNodeCanRenderIsLeftOutAndNamed) {
     expect_balanced();
 }
 
+// Nodes of another kind have other bits: here all of them do.
+TEST_F(FaultyNodes, AReproducibleFrameIsRenderedByOneKindAlone) {
+    std::atomic<int> others = 0;
+    cluster.add_node(hooked(
+        [&](const auto&, backend::RenderResult& result) {
+            ++others;
+            for (frame::FilmTile& block : result.blocks) std::ranges::fill(block.planes, 0.5f);
+        },
+        5us, "other-1"));
+    for (int i = 0; i < 2; ++i) cluster.add_node(hooked([](const auto&, auto&) {}, 5us, "mine-1"));
+    session::ViewRequest request = small_request();
+    request.reproducible = true;
+    request.min_nodes = 2;
+    request.picture = session::PictureEncoding::Png;
+    const client::ViewResult result = render(request);
+    EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
+    EXPECT_EQ(to_hex(frame::film_hash(*result.film())), honest_hash());
+    EXPECT_EQ(others, 0);
+    const std::string left_out =
+        "node node-1 (kind other-1) takes no part: the frame is reproducible on kind mine-1";
+    EXPECT_TRUE(was_logged(left_out));
+    EXPECT_TRUE(std::ranges::find(result.summary.picture.notes, left_out) !=
+                result.summary.picture.notes.end());
+    request.min_nodes = 3;
+    request.wait_limit = 200ms;
+    const client::ViewResult waiting = render(request);
+    EXPECT_EQ(waiting.summary.outcome, session::Outcome::NoNodes) << "no kind has three nodes";
+    EXPECT_NE(waiting.summary.message.find("there are 2 kinds"), std::string::npos)
+        << waiting.summary.message;
+    expect_balanced();
+}
+
 }  // namespace
 }  // namespace tessera::test

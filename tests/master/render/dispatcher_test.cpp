@@ -265,5 +265,45 @@ TEST_F(DispatcherTest, ReproducibleWorkGoesToPinnedNodesOnly) {
     EXPECT_EQ(nodes.find(NodeId{2})->pending.size(), 1u);
 }
 
+TEST_F(DispatcherTest, AReproducibleFrameHasNodesOfOneKind) {
+    const auto add = [&](std::uint64_t number, const std::string& kind) {
+        NodeRecord& node = add_node(number, 1);
+        node.hello.reproducible = true;
+        node.hello.kind = kind;
+    };
+    add(1, "x");
+    add(2, "y");
+    add(3, "y");
+    const view::View asked = view(8, 64);
+    const NodeRequirements any{Scene, true};
+    dispatcher.begin(asked, {.window = asked.window, .tile = 8, .spp = 4}, any);
+    EXPECT_EQ(dispatcher.leading_kind(asked, Scene), "y") << "it has more workers";
+    EXPECT_EQ(dispatcher.prospects(asked, any).ready, 2u) << "as many as may work together";
+    deal(ViewId{8});
+    EXPECT_EQ(dispatcher.kind(ViewId{8}), "y");
+    EXPECT_TRUE(nodes.find(NodeId{1})->pending.empty());
+    EXPECT_EQ(nodes.find(NodeId{2})->pending.size(), 1u);
+    EXPECT_EQ(nodes.find(NodeId{3})->pending.size(), 1u);
+    const std::string left_out = "node node-1 (kind x) takes no part: the frame is reproducible on kind y";
+    EXPECT_EQ(dispatcher.left_out(ViewId{8}), std::vector{left_out});
+    for (int i = 0; i < 3; ++i) dispatcher.collect_overdue(now);
+    EXPECT_EQ(events, std::vector{left_out}) << "once";
+    EXPECT_EQ(dispatcher.idle_reason(*nodes.find(NodeId{1})), "the frame is reproducible on kind y");
+    EXPECT_EQ(dispatcher.idle_reason(*nodes.find(NodeId{2})), "");
+    // The kind vanishes: the frame waits for it.
+    for (const std::uint64_t gone : {2u, 3u}) {
+        dispatcher.node_gone(NodeId{gone}, Dispatcher::Departure::Expected, now);
+        nodes.remove(NodeId{gone});
+    }
+    deal(ViewId{8});
+    EXPECT_TRUE(nodes.find(NodeId{1})->pending.empty());
+    const NodeRequirements chosen{Scene, true, "y"};
+    EXPECT_EQ(dispatcher.prospects(asked, chosen).suitable, 0u);
+    EXPECT_NE(dispatcher.obstacles(asked, chosen).find("reproducible on kind y"), std::string::npos);
+    add(4, "y");
+    deal(ViewId{8});
+    EXPECT_EQ(nodes.find(NodeId{4})->pending.size(), 1u);
+}
+
 }  // namespace
 }  // namespace tessera::master

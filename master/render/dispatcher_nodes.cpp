@@ -1,0 +1,168 @@
+// Nodes: which of them may render a pass, and what they are given.
+#include <algorithm>
+
+#include "master/peers/suitable_nodes.h"
+#include "master/render/dispatcher.h"
+
+namespace tessera::master {
+
+bool Dispatcher::suits(const NodeRecord& node, const view::View& view,
+                       const NodeRequirements& requirements) const {
+    return master::suits(node, view, requirements.version) &&
+           (!requirements.reproducible ||
+            (node.hello.reproducible && (requirements.kind.empty() || requirements.kind == node.hello.kind)));
+}
+
+bool Dispatcher::ready(const NodeRecord& node, const view::View& view,
+                       const NodeRequirements& requirements) const {
+    return suits(node, view, requirements) && master::ready(node, view, requirements.version);
+}
+
+std::vector<NodeCapacity> Dispatcher::capacities() const {
+    std::vector<NodeCapacity> capacities;
+    for (const auto& [id, node] : nodes_.all()) capacities.push_back(node.capacity());
+    return capacities;
+}
+
+void Dispatcher::deal(ViewId id, std::vector<NodeCapacity>& capacities, TimePoint now) {
+    Active* pass = active(id);
+    if (pass == nullptr) return;
+    NodeRequirements& requirements = pass->requirements;
+    if (requirements.reproducible && requirements.kind.empty())
+        requirements.kind = leading_kind(pass->view, requirements.version);
+    // A node that fails much gets no more until it is known whose fault that is, unless all do.
+    constexpr std::uint32_t MaxUnexplained = 3;
+    std::vector<NodeCapacity> suitable, suspect;
+    for (const NodeCapacity& capacity : capacities) {
+        if (!ready(*nodes_.find(capacity.node), pass->view, requirements)) continue;
+        const bool fails = unexplained_failures(capacity.node) >= MaxUnexplained;
+        (fails ? suspect : suitable).push_back(capacity);
+    }
+    if (suitable.empty()) suitable = std::move(suspect);
+    if (suitable.empty()) return;
+    for (const Assignment& assignment : pass->scheduler.assign(suitable, balancer_, now)) {
+        NodeRecord& node = *nodes_.find(assignment.node);
+        if (auto opening = node.opening(pass->view, pass->hold_film))
+            outbox_.control(node.control, *std::move(opening));
+        node.pending[assignment.unit.id] = ++node.work_sequence;
+        outbox_.control(node.control, wire::Work{node.work_sequence, assignment.unit});
+        for (NodeCapacity& capacity : capacities) {
+            if (capacity.node != assignment.node) continue;
+            --capacity.free_slots;
+            ++capacity.in_flight;
+        }
+    }
+}
+
+Dispatcher::Prospects Dispatcher::prospects(const view::View& view, const NodeRequirements& wanted) const {
+    NodeRequirements requirements = wanted;
+    if (wanted.reproducible && wanted.kind.empty()) requirements.kind = leading_kind(view, wanted.version);
+    Prospects prospects;
+    for (const auto& [id, node] : nodes_.all()) {
+        if (!suits(node, view, requirements)) continue;
+        ++prospects.suitable;
+        prospects.workers += std::max(1u, node.hello.concurrent_units);
+        prospects.building += node.state.phase == session::NodePhase::Building ? 1 : 0;
+        prospects.scene_bytes += node.state.scene_bytes;
+        const double rate = balancer_.rate(id);
+        double& slowest = prospects.slowest_worker;
+        if (rate > 0.0) slowest = slowest > 0.0 ? std::min(slowest, rate) : rate;
+        if (!ready(node, view, requirements)) continue;
+        ++prospects.ready;
+        prospects.samples_per_second += node.capacity().workers * rate;
+    }
+    return prospects;
+}
+
+// ---- who takes part ----
+
+std::string Dispatcher::leading_kind(const view::View& view, Version version) const {
+    struct Strength {
+        double samples_per_second = 0.0;
+        std::uint32_t workers = 0;
+    };
+    std::map<std::string, Strength> kinds;
+    bool all_measured = true;
+    for (const auto& [id, node] : nodes_.all()) {
+        if (!suits(node, view, {version, true})) continue;
+        Strength& kind = kinds[node.hello.kind];
+        const std::uint32_t workers = node.capacity().workers;
+        kind.workers += workers;
+        kind.samples_per_second += workers * balancer_.rate(id);
+        all_measured = all_measured && balancer_.rate(id) > 0.0;
+    }
+    const auto most = std::max_element(kinds.begin(), kinds.end(), [&](const auto& a, const auto& b) {
+        return all_measured ? a.second.samples_per_second < b.second.samples_per_second
+                            : a.second.workers < b.second.workers;
+    });
+    return most == kinds.end() ? "" : most->first;
+}
+
+std::string Dispatcher::kind(ViewId pass) const {
+    const auto found = passes_.find(pass);
+    return found == passes_.end() ? "" : found->second.requirements.kind;
+}
+
+std::string Dispatcher::obstacles(const view::View& view, const NodeRequirements& requirements) const {
+    std::string text = master::obstacles(nodes_, view, requirements.version);
+    if (!requirements.reproducible) return text;
+    if (!requirements.kind.empty())
+        return text + "the frame is reproducible on kind " + requirements.kind +
+               " alone: start a node of this kind; ";
+    const auto count = std::ranges::count_if(
+        nodes_.all(), [](const auto& entry) { return !entry.second.hello.reproducible; });
+    if (count > 0)
+        text += "the frame is reproducible, and " + std::to_string(count) +
+                " nodes are not pinned to AVX2: start them with --isa avx2; ";
+    std::set<std::string> kinds;
+    for (const auto& [id, node] : nodes_.all()) {
+        if (suits(node, view, requirements)) kinds.insert(node.hello.kind);
+    }
+    if (kinds.size() > 1)
+        text += "the frame is reproducible, so nodes of one kind alone take part, and there are " +
+                std::to_string(kinds.size()) + " kinds; ";
+    return text;
+}
+
+std::string Dispatcher::why_left_out(const NodeRecord& node, const Active& pass) const {
+    const NodeRequirements& wanted = pass.requirements;
+    if (!wanted.reproducible || wanted.kind.empty() || suits(node, pass.view, wanted) ||
+        !master::suits(node, pass.view, wanted.version))
+        return {};
+    return "the frame is reproducible on kind " + wanted.kind +
+           (node.hello.kind == wanted.kind ? ", and this node is not pinned to AVX2 (--isa avx2)" : "");
+}
+
+std::string Dispatcher::idle_reason(const NodeRecord& node) const {
+    for (const auto& [view, pass] : passes_) {
+        if (std::string reason = why_left_out(node, pass); !reason.empty()) return reason;
+    }
+    return {};
+}
+
+namespace {
+std::string takes_no_part(const NodeRecord& node, const std::string& reason) {
+    return "node " + node.hello.name + " (kind " + node.hello.kind + ") takes no part: " + reason;
+}
+}  // namespace
+
+std::vector<std::string> Dispatcher::left_out(ViewId pass) const {
+    std::vector<std::string> texts;
+    const auto found = passes_.find(pass);
+    if (found == passes_.end() || !found->second.requirements.reproducible) return texts;
+    for (const auto& [id, node] : nodes_.all()) {
+        if (const std::string reason = why_left_out(node, found->second); !reason.empty())
+            texts.push_back(takes_no_part(node, reason));
+    }
+    return texts;
+}
+
+void Dispatcher::announce_idle(NodeRecord& node) {
+    constexpr std::size_t MaxAnnounced = 64;
+    const std::string reason = idle_reason(node);
+    if (reason.empty() || node.announced.size() >= MaxAnnounced || !node.announced.insert(reason).second)
+        return;
+    events_({wire::Severity::Info, takes_no_part(node, reason)});
+}
+
+}  // namespace tessera::master
