@@ -4,6 +4,14 @@
 
 namespace tessera::master {
 
+namespace {
+
+bool has_null_backend(const wire::Hello& hello) {
+    return hello.backend == "null" || hello.kind.substr(0, hello.kind.find_first_of("-/")) == "null";
+}
+
+}  // namespace
+
 NodeCapacity NodeRecord::capacity() const {
     const auto on_the_way = static_cast<std::uint32_t>(pending.size());
     return {.node = id,
@@ -30,8 +38,16 @@ NodeRecord& NodeTable::add(NodeId id, std::uint64_t token, net::PeerId control, 
                       .user = std::move(user),
                       .hello = std::move(hello),
                       .liveness = net::Liveness(liveness_, now)};
+    record.is_null = has_null_backend(record.hello);
     record.last_progress_at = now;
-    return nodes_.insert_or_assign(id, std::move(record)).first->second;
+    remove(id);
+    renderers_ += record.is_null ? 0 : 1;
+    return nodes_.emplace(id, std::move(record)).first->second;
+}
+
+void NodeTable::remove(NodeId id) {
+    const auto node = nodes_.extract(id);
+    if (node && !node.mapped().is_null) --renderers_;
 }
 
 NodeRecord* NodeTable::find(NodeId id) {

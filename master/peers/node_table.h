@@ -24,6 +24,7 @@ struct NodeRecord {
     std::optional<net::PeerId> bulk;  // known after its BulkHello
     std::string user;                 // of its key; a token works only for the same user
     wire::Hello hello;
+    bool is_null = false;  // its back-end renders test patterns instead of the scene
     net::Liveness liveness;
     wire::Heartbeat state;  // the latest, and when it came: what our next heartbeat echoes
     TimePoint heartbeat_at{};
@@ -70,7 +71,9 @@ class NodeTable {
 
     NodeRecord& add(NodeId id, std::uint64_t token, net::PeerId control, std::string user, wire::Hello hello,
                     TimePoint now);
-    void remove(NodeId id) { nodes_.erase(id); }
+    void remove(NodeId id);
+    // There is no node that renders the scene itself.
+    bool all_are_null() const { return renderers_ == 0; }
     NodeRecord* by_control(net::PeerId peer);
     NodeRecord* by_bulk(net::PeerId peer);
     NodeRecord* by_token(std::uint64_t token);
@@ -89,6 +92,7 @@ class NodeTable {
     net::LivenessSettings liveness_;
     StuckSettings stuck_;
     std::map<NodeId, NodeRecord> nodes_;
+    std::size_t renderers_ = 0;  // nodes that are not null
 };
 
 }  // namespace tessera::master

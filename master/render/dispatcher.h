@@ -65,6 +65,8 @@ class Dispatcher {
     std::string obstacles(const view::View& view, const NodeRequirements& requirements) const;
     // Why the node gets no work of passes that it could render otherwise; "" = it does.
     std::string idle_reason(const NodeRecord& node) const;
+    // Its film has test patterns of null nodes, but now there are nodes that render the scene.
+    bool is_superseded(ViewId pass) const;
     std::vector<std::string> left_out(ViewId pass) const;  // "node b (kind X) takes no part: ..."
     std::size_t node_count() const { return nodes_.all().size(); }
     double rate(NodeId node) const { return balancer_.rate(node); }  // pixel samples a second of one worker
@@ -108,11 +110,13 @@ class Dispatcher {
         UnitId first_unit;  // its units have UnitsPerPass ids from this one on
         Scheduler scheduler;
         std::set<std::string> kinds{};  // of nodes whose film is in it
+        bool has_null_film = false, has_other_film = false;
     };
     Active* active(ViewId pass);
     Active* holder(UnitId unit);
     bool suits(const NodeRecord& node, const view::View& view, const NodeRequirements& requirements) const;
     bool ready(const NodeRecord& node, const view::View& view, const NodeRequirements& requirements) const;
+    bool may_use_null_nodes(const view::View& view) const;
     std::string why_left_out(const NodeRecord& node, const Active& pass) const;
     void announce_idle(NodeRecord& node);
     void send_cancellations(const std::vector<Cancellation>& cancellations);

@@ -57,7 +57,10 @@ Dispatcher::Taken Dispatcher::take(const MergeReport& report, TimePoint now) {
             break;
         case FrameAssembler::Outcome::Merged:
             taken = Taken::New;
-            if (node != nullptr) pass->kinds.insert(node->hello.kind);
+            if (node != nullptr) {
+                pass->kinds.insert(node->hello.kind);
+                (node->is_null ? pass->has_null_film : pass->has_other_film) = true;
+            }
             break;
         case FrameAssembler::Outcome::Duplicate:
         case FrameAssembler::Outcome::Misfit:

@@ -8,9 +8,21 @@ namespace tessera::master {
 
 bool Dispatcher::suits(const NodeRecord& node, const view::View& view,
                        const NodeRequirements& requirements) const {
-    return master::suits(node, view, requirements.version) &&
+    return master::suits(node, view, requirements.version) && (!node.is_null || may_use_null_nodes(view)) &&
            (!requirements.reproducible ||
             (node.hello.reproducible && (requirements.kind.empty() || requirements.kind == node.hello.kind)));
+}
+
+// Test patterns are never mixed with film of the scene.
+bool Dispatcher::may_use_null_nodes(const view::View& view) const {
+    if (!nodes_.all_are_null()) return false;
+    const auto pass = passes_.find(view.id);
+    return pass == passes_.end() || !pass->second.has_other_film;
+}
+
+bool Dispatcher::is_superseded(ViewId pass) const {
+    const auto found = passes_.find(pass);
+    return found != passes_.end() && found->second.has_null_film && !nodes_.all_are_null();
 }
 
 bool Dispatcher::ready(const NodeRecord& node, const view::View& view,
@@ -76,6 +88,17 @@ Dispatcher::Prospects Dispatcher::prospects(const view::View& view, const NodeRe
 
 // ---- who takes part ----
 
+namespace {
+
+constexpr std::string_view NullNodeIdles =
+    "the null back-end renders test patterns, and there are nodes that render the scene";
+
+std::string takes_no_part(const NodeRecord& node, const std::string& reason) {
+    return "node " + node.hello.name + " (kind " + node.hello.kind + ") takes no part: " + reason;
+}
+
+}  // namespace
+
 std::string Dispatcher::leading_kind(const view::View& view, Version version) const {
     struct Strength {
         double samples_per_second = 0.0;
@@ -105,6 +128,10 @@ std::string Dispatcher::kind(ViewId pass) const {
 
 std::string Dispatcher::obstacles(const view::View& view, const NodeRequirements& requirements) const {
     std::string text = master::obstacles(nodes_, view, requirements.version);
+    const auto nulls =
+        std::ranges::count_if(nodes_.all(), [](const auto& entry) { return entry.second.is_null; });
+    if (nulls > 0 && !may_use_null_nodes(view))
+        text += std::to_string(nulls) + " null nodes idle, since they render test patterns; ";
     if (!requirements.reproducible) return text;
     if (!requirements.kind.empty())
         return text + "the frame is reproducible on kind " + requirements.kind +
@@ -125,6 +152,7 @@ std::string Dispatcher::obstacles(const view::View& view, const NodeRequirements
 }
 
 std::string Dispatcher::why_left_out(const NodeRecord& node, const Active& pass) const {
+    if (node.is_null && !may_use_null_nodes(pass.view)) return std::string(NullNodeIdles);
     const NodeRequirements& wanted = pass.requirements;
     if (!wanted.reproducible || wanted.kind.empty() || suits(node, pass.view, wanted) ||
         !master::suits(node, pass.view, wanted.version))
@@ -134,22 +162,17 @@ std::string Dispatcher::why_left_out(const NodeRecord& node, const Active& pass)
 }
 
 std::string Dispatcher::idle_reason(const NodeRecord& node) const {
+    if (node.is_null && !nodes_.all_are_null()) return std::string(NullNodeIdles);
     for (const auto& [view, pass] : passes_) {
         if (std::string reason = why_left_out(node, pass); !reason.empty()) return reason;
     }
     return {};
 }
 
-namespace {
-std::string takes_no_part(const NodeRecord& node, const std::string& reason) {
-    return "node " + node.hello.name + " (kind " + node.hello.kind + ") takes no part: " + reason;
-}
-}  // namespace
-
 std::vector<std::string> Dispatcher::left_out(ViewId pass) const {
     std::vector<std::string> texts;
     const auto found = passes_.find(pass);
-    if (found == passes_.end() || !found->second.requirements.reproducible) return texts;
+    if (found == passes_.end()) return texts;
     for (const auto& [id, node] : nodes_.all()) {
         if (const std::string reason = why_left_out(node, found->second); !reason.empty())
             texts.push_back(takes_no_part(node, reason));

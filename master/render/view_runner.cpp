@@ -156,7 +156,7 @@ void ViewRunner::begin_pass(ViewState& view, std::vector<frame::FilmTile>&& bloc
 
 void ViewRunner::advance(ViewState& view, TimePoint now) {
     Run& run = view.run;
-    if (run.is_over()) return;
+    if (drops_test_patterns(view) || run.is_over()) return;
     if (view.passes.empty()) {
         if (!view.restart_wanted && !run.outcome && !run.is_rendering()) wait_for_nodes(view, now);
         return;
@@ -168,6 +168,17 @@ void ViewRunner::advance(ViewState& view, TimePoint now) {
     } else {
         advance_to_next_pass(view, now);
     }
+}
+
+// Null nodes began the picture, and a node that renders the scene has joined: the view starts over without them.
+bool ViewRunner::drops_test_patterns(ViewState& view) {
+    const bool may_restart = !view.passes.empty() && (!view.run.outcome || view.shows_all());
+    if (!may_restart || !passes_.dispatcher.is_superseded(view.pass().view.id)) return false;
+    events_({wire::Severity::Info,
+             "view " + view.name + " starts over: its film has test patterns of null nodes"});
+    passes_.end_all(view);
+    view.restart_wanted = true;
+    return true;
 }
 
 void ViewRunner::observe(ViewState& view, TimePoint now) {

@@ -314,7 +314,11 @@ void Views::advance(TimePoint now) {
         // One view that fails takes no other with it.
         try {
             runner_.notify_waiting(view, now);
-            if (!view.in_group()) runner_.advance(view, now);
+            if (!view.in_group()) {
+                runner_.advance(view, now);
+            } else if (!view.passes.empty() && services_.dispatcher.is_superseded(view.pass().view.id)) {
+                group_.scene_changed(view.version, true);
+            }
         } catch (const std::exception& error) {
             runner_.fail(view, std::string("it could not be rendered: ") + error.what(), now);
         }

@@ -177,5 +177,31 @@ TEST_F(FaultyNodes, AReproducibleFrameIsRenderedByOneKindAlone) {
     expect_balanced();
 }
 
+// Its test patterns do not get into pictures, whichever node comes first.
+TEST_F(FaultyNodes, ANullNodeRendersNothingWhileOthersAreConnected) {
+    std::atomic<int> patterns = 0;
+    cluster.add_node(hooked([&](const auto&, auto&) { ++patterns; }, 100us));
+    std::jthread late([&] {
+        while (patterns == 0) std::this_thread::sleep_for(1ms);
+        cluster.add_node(hooked(
+            [](const auto&, backend::RenderResult& result) {
+                for (frame::FilmTile& block : result.blocks) std::ranges::fill(block.planes, 0.5f);
+            },
+            {}, "real-1"));
+    });
+    session::ViewRequest request = small_request();
+    request.picture = session::PictureEncoding::Png;
+    const client::ViewResult result = render(request);
+    late.join();
+    EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
+    EXPECT_TRUE(std::ranges::all_of(result.film()->plane(0), [](float value) { return value == 0.5f; }));
+    ASSERT_EQ(result.summary.nodes.size(), 1u);
+    EXPECT_EQ(result.summary.nodes[0].name, "node-2");
+    EXPECT_TRUE(was_logged("node node-1 (kind null-1/r1) takes no part: the null back-end"));
+    ASSERT_FALSE(result.summary.picture.notes.empty());
+    EXPECT_NE(result.summary.picture.notes[0].find("node node-1"), std::string::npos);
+    EXPECT_NE(status.nodes.at(0).idle_reason, "");
+}
+
 }  // namespace
 }  // namespace tessera::test

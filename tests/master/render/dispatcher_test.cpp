@@ -305,5 +305,45 @@ TEST_F(DispatcherTest, AReproducibleFrameHasNodesOfOneKind) {
     EXPECT_EQ(nodes.find(NodeId{4})->pending.size(), 1u);
 }
 
+TEST_F(DispatcherTest, NullNodesRenderOnlyAmongThemselves) {
+    const auto add = [&](std::uint64_t number, const std::string& kind) {
+        wire::Hello hello{.name = "node-" + std::to_string(number), .channels = {frame::Channel::Color}};
+        hello.kind = kind;
+        NodeRecord& node = nodes.add(NodeId{number}, number, number, "node", std::move(hello), now);
+        node.bulk = 100 + number;
+        node.reported = node.state.version = Scene;
+        node.state.free_slots = 1;
+    };
+    add(1, "null-1/r1");
+    const view::View asked = view(8, 64);
+    begin(asked);
+    deal(ViewId{8});
+    ASSERT_EQ(nodes.find(NodeId{1})->pending.size(), 1u) << "there are no others";
+    const view::WorkUnit unit = channel.all<wire::Work>().at(0).unit;
+    dispatcher.take(report(unit, FrameAssembler::Outcome::Merged, 1), now);
+    EXPECT_FALSE(dispatcher.is_superseded(ViewId{8}));
+    add(2, "embree-3/r1");
+    EXPECT_TRUE(dispatcher.is_superseded(ViewId{8})) << "its film has test patterns";
+    EXPECT_EQ(dispatcher.prospects(asked, {Scene}).ready, 1u);
+    for (int i = 0; i < 3; ++i) dispatcher.collect_overdue(now);
+    ASSERT_EQ(events.size(), 1u) << "once";
+    EXPECT_NE(events[0].find("node node-1 (kind null-1/r1) takes no part: the null back-end"),
+              std::string::npos);
+    EXPECT_NE(dispatcher.idle_reason(*nodes.find(NodeId{1})), "");
+    begin(asked);
+    nodes.find(NodeId{1})->pending.clear();
+    deal(ViewId{8});
+    EXPECT_TRUE(nodes.find(NodeId{1})->pending.empty());
+    ASSERT_EQ(nodes.find(NodeId{2})->pending.size(), 1u);
+    dispatcher.take(report(channel.all<wire::Work>().back().unit, FrameAssembler::Outcome::Merged, 2), now);
+    // A picture that others began waits for others.
+    dispatcher.node_gone(NodeId{2}, Dispatcher::Departure::Expected, now);
+    nodes.remove(NodeId{2});
+    deal(ViewId{8});
+    EXPECT_TRUE(nodes.find(NodeId{1})->pending.empty());
+    EXPECT_NE(dispatcher.obstacles(asked, {Scene}).find("1 null nodes idle"), std::string::npos);
+    EXPECT_EQ(dispatcher.prospects(view(16, 64), {Scene}).ready, 1u) << "another may be of test patterns";
+}
+
 }  // namespace
 }  // namespace tessera::master
