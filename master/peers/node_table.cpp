@@ -74,6 +74,7 @@ NodeRecord* NodeTable::by_token(std::uint64_t token) {
 }
 
 void NodeTable::heartbeat(NodeRecord& node, const wire::Heartbeat& heartbeat, TimePoint now) {
+    const bool same_phase = node.state.phase == heartbeat.phase;
     node.state = heartbeat;
     node.heartbeat_at = now;
     node.leaving = node.leaving || heartbeat.phase == session::NodePhase::Leaving;
@@ -82,13 +83,15 @@ void NodeTable::heartbeat(NodeRecord& node, const wire::Heartbeat& heartbeat, Ti
     const auto round_trip =
         node.clock.heartbeat(heartbeat.sent_at, heartbeat.echo_sent_at, heartbeat.echo_delay, now);
     if (round_trip) node.round_trip_seconds = seconds(*round_trip);
-    const bool works =
-        heartbeat.phase == session::NodePhase::Rendering || heartbeat.phase == session::NodePhase::Building;
-    if (!works || heartbeat.progress != node.last_progress) {
+    const bool builds = heartbeat.phase == session::NodePhase::Building;
+    const bool works = builds || heartbeat.phase == session::NodePhase::Rendering;
+    if (!works || !same_phase || heartbeat.progress != node.last_progress) {
         node.last_progress = heartbeat.progress;
         node.last_progress_at = now;
     }
-    node.stuck = works && now - node.last_progress_at > stuck_.allowance;
+    node.stuck = works && now - node.last_progress_at >
+                              (builds ? stuck_.building : std::max(stuck_.allowance, node.allowance));
+    node.stuck_is_announced = node.stuck_is_announced && node.stuck;
 }
 
 std::vector<NodeId> NodeTable::timed_out(TimePoint now) const {

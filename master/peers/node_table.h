@@ -47,7 +47,9 @@ struct NodeRecord {
     net::PeerClock clock;
     std::uint64_t last_progress = 0;  // for stuck detection
     TimePoint last_progress_at{};
+    Duration allowance{};  // of the units that it has; see Dispatcher::allowance()
     bool stuck = false;
+    bool stuck_is_announced = false;
     std::set<std::string> announced;  // why it takes no part, each reason once
 
     Quarantine::Key identity() const { return {user, hello.name}; }
@@ -59,8 +61,12 @@ struct NodeRecord {
     NodeCapacity capacity() const;
 };
 
+// How long a node whose heartbeats arrive may make no progress.
 struct StuckSettings {
-    Duration allowance = std::chrono::seconds(30);  // without progress while rendering or building
+    Duration allowance = std::chrono::seconds(30);  // while rendering; more for long units:
+    double predicted_times = 10.0;                  // as often as a unit should take
+    Duration first_film = std::chrono::minutes(5);  // until its first film of a pass: it may compile kernels
+    Duration building = std::chrono::minutes(30);   // while it builds the scene
 };
 
 // Nodes by id, control peer and bulk peer. Pure: driven by events with their times.
@@ -72,6 +78,7 @@ class NodeTable {
     NodeRecord& add(NodeId id, std::uint64_t token, net::PeerId control, std::string user, wire::Hello hello,
                     TimePoint now);
     void remove(NodeId id);
+    const StuckSettings& stuck() const { return stuck_; }
     // There is no node that renders the scene itself.
     bool all_are_null() const { return renderers_ == 0; }
     NodeRecord* by_control(net::PeerId peer);

@@ -55,6 +55,7 @@ void Dispatcher::revise(const view::View& view) {
     Active* pass = active(view.id);
     if (pass == nullptr) return;
     pass->view = view;
+    pass->rendered_by.clear();  // other channels are other kernels
     send_cancellations(pass->scheduler.revise(view.revision));
 }
 
@@ -129,7 +130,9 @@ void Dispatcher::collect_overdue(TimePoint now) {
         for (const UnitId unit : NodeTable::overdue(node, held, now, overdue_patience_)) {
             if (Active* pass = holder(unit)) pass->scheduler.end(unit, id, Fate::Lost);
         }
+        node.allowance = allowance(id);
         if (!node.stuck) continue;
+        announce_stuck(node, now);
         for (auto& [view, pass] : passes_) pass.scheduler.node_gone(id, node.capacity().workers);
     }
 }

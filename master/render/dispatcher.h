@@ -109,7 +109,8 @@ class Dispatcher {
         Duration hold_film{};
         UnitId first_unit;  // its units have UnitsPerPass ids from this one on
         Scheduler scheduler;
-        std::set<std::string> kinds{};  // of nodes whose film is in it
+        std::set<std::string> kinds{};   // of nodes whose film is in it
+        std::set<NodeId> rendered_by{};  // nodes that have sent film, so that their kernels are compiled
         bool has_null_film = false, has_other_film = false;
     };
     Active* active(ViewId pass);
@@ -119,6 +120,8 @@ class Dispatcher {
     bool may_use_null_nodes(const view::View& view) const;
     std::string why_left_out(const NodeRecord& node, const Active& pass) const;
     void announce_idle(NodeRecord& node);
+    Duration allowance(NodeId node) const;
+    void announce_stuck(NodeRecord& node, TimePoint now);
     void send_cancellations(const std::vector<Cancellation>& cancellations);
     void confirm_cancelled(UnitId unit, TimePoint now);
     std::uint32_t unexplained_failures(NodeId node) const;

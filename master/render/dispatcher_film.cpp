@@ -47,6 +47,7 @@ Dispatcher::Taken Dispatcher::take(const MergeReport& report, TimePoint now) {
         if (node != nullptr) fault(*node, "it sent damaged film: " + problem, now);
         return Taken::Dropped;
     }
+    pass->rendered_by.insert(report.node);
     Taken taken = Taken::Known;
     switch (report.result.outcome) {
         case FrameAssembler::Outcome::Overlap:

@@ -1,5 +1,6 @@
 // Nodes: which of them may render a pass, and what they are given.
 #include <algorithm>
+#include <utility>
 
 #include "master/peers/suitable_nodes.h"
 #include "master/render/dispatcher.h"
@@ -178,6 +179,41 @@ std::vector<std::string> Dispatcher::left_out(ViewId pass) const {
             texts.push_back(takes_no_part(node, reason));
     }
     return texts;
+}
+
+// ---- stuck nodes ----
+
+// What its units may take until one of them is finished.
+Duration Dispatcher::allowance(NodeId node) const {
+    const StuckSettings& settings = nodes_.stuck();
+    const double rate = balancer_.rate(node);
+    Duration longest{};
+    for (const auto& [view, pass] : passes_) {
+        const bool may_compile = !pass.rendered_by.contains(node);
+        for (const UnitId id : pass.scheduler.held_by(node)) {
+            if (may_compile) {
+                longest = std::max(longest, settings.first_film);
+                break;
+            }
+            const view::WorkUnit& unit = pass.scheduler.ledger().find(id)->unit;
+            const auto samples = static_cast<double>(unit.block.count() * unit.tile.pixel_count());
+            if (rate <= 0.0) continue;
+            constexpr double MaxSeconds = 86400.0;
+            const std::chrono::duration<double> predicted(
+                std::min(MaxSeconds, settings.predicted_times * samples / rate));
+            longest = std::max(longest, std::chrono::duration_cast<Duration>(predicted));
+        }
+    }
+    return longest;
+}
+
+void Dispatcher::announce_stuck(NodeRecord& node, TimePoint now) {
+    if (std::exchange(node.stuck_is_announced, true)) return;
+    events_(
+        {wire::Severity::Warning,
+         "node " + node.hello.name + " is stuck: it has finished nothing for " +
+             std::to_string(std::chrono::round<std::chrono::seconds>(now - node.last_progress_at).count()) +
+             " s; others get its units"});
 }
 
 void Dispatcher::announce_idle(NodeRecord& node) {

@@ -177,6 +177,53 @@ TEST_F(FaultyNodes, AReproducibleFrameIsRenderedByOneKindAlone) {
     expect_balanced();
 }
 
+void quick_to_be_stuck(master::MasterSettings& settings) {
+    settings.stuck = {.allowance = 500ms, .first_film = 60s};
+}
+
+// As a driver that compiles kernels for half a minute.
+TEST_F(FaultyNodes, ANodeThatCompilesBeforeItsFirstUnitIsNotStuck) {
+    LoopbackCluster patient(quick_to_be_stuck);
+    std::atomic<bool> is_first = true;
+    patient.add_node(hooked([&](const auto&, auto&) {
+        if (is_first.exchange(false)) std::this_thread::sleep_for(1500ms);
+    }));
+    const auto session = patient.batch(std::make_shared<scene::BlobStore>());
+    const client::ViewResult result = client::render(*session, small_request(), {}, {});
+    EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
+    EXPECT_EQ(result.summary.units.lost, 0u);
+    EXPECT_EQ(result.summary.units.reissued, 0u);
+    for (const std::string& event : patient.events())
+        EXPECT_EQ(event.find("is stuck"), std::string::npos) << event;
+}
+
+TEST_F(FaultyNodes, ANodeThatStopsInTheMiddleIsStuckAndOthersGetItsUnits) {
+    LoopbackCluster strict(quick_to_be_stuck);
+    std::atomic<int> units = 0;
+    std::atomic<bool> go_on = false;
+    strict.add_node(hooked([&](const auto&, auto&) {
+        if (++units < 5) return;
+        while (!go_on) std::this_thread::sleep_for(5ms);
+    }));
+    session::ViewRequest request = small_request();
+    const auto session = strict.batch(std::make_shared<scene::BlobStore>());
+    std::jthread late([&] {
+        const auto says_stuck = [&] {
+            return std::ranges::any_of(strict.events(), [](const std::string& event) {
+                return event.find("node node-1 is stuck") != std::string::npos;
+            });
+        };
+        for (int i = 0; i < 2000 && !says_stuck(); ++i) std::this_thread::sleep_for(5ms);
+        EXPECT_TRUE(says_stuck());
+        strict.add_node("null");
+    });
+    const client::ViewResult result = client::render(*session, request, {}, {});
+    go_on = true;
+    EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
+    EXPECT_GT(result.summary.units.lost, 0u);
+    EXPECT_EQ(to_hex(frame::film_hash(*result.film())), honest_hash());
+}
+
 // Its test patterns do not get into pictures, whichever node comes first.
 TEST_F(FaultyNodes, ANullNodeRendersNothingWhileOthersAreConnected) {
     std::atomic<int> patterns = 0;

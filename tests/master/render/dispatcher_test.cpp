@@ -345,5 +345,29 @@ TEST_F(DispatcherTest, NullNodesRenderOnlyAmongThemselves) {
     EXPECT_EQ(dispatcher.prospects(view(16, 64), {Scene}).ready, 1u) << "another may be of test patterns";
 }
 
+TEST_F(DispatcherTest, ANodeMayCompileBeforeItsFirstFilmAndALongUnitMayTakeLong) {
+    NodeRecord& node = add_node(1, 1);
+    begin(view(8, 16));
+    dispatcher.collect_overdue(now);
+    EXPECT_EQ(node.allowance, Duration::zero()) << "it has no units";
+    deal(ViewId{8});
+    dispatcher.collect_overdue(now);
+    EXPECT_EQ(node.allowance, StuckSettings{}.first_film);
+    const view::WorkUnit unit = channel.all<wire::Work>().at(0).unit;
+    MergeReport slow = report(unit, FrameAssembler::Outcome::Merged, 1);
+    slow.pixel_samples = 1;
+    slow.busy = std::chrono::seconds(60);
+    dispatcher.take(slow, now);
+    node.pending.clear();
+    deal(ViewId{8});
+    ASSERT_FALSE(dispatcher.find(ViewId{8})->held_by(NodeId{1}).empty());
+    dispatcher.collect_overdue(now);
+    EXPECT_GE(node.allowance, std::chrono::minutes(10)) << "ten times what a sample takes";
+    node.stuck = true;
+    for (int i = 0; i < 2; ++i) dispatcher.collect_overdue(now + std::chrono::minutes(11));
+    ASSERT_EQ(events.size(), 1u);
+    EXPECT_EQ(events[0].find("node node-1 is stuck: it has finished nothing for 66"), 0u) << events[0];
+}
+
 }  // namespace
 }  // namespace tessera::master
