@@ -28,6 +28,7 @@ struct MasterSettings {
     std::filesystem::path session_folder;  // on disk; empty = in memory alone
     Duration checkpoint_interval = std::chrono::seconds(10);
     wire::BlobLimits blob_limits;
+    double verified_share = 0.0;  // of the film of nodes, 0 to 1: see render/verifier.h
     std::size_t max_sessions = 256, max_nodes = 1024;
 };
 

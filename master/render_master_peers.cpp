@@ -203,7 +203,8 @@ session::ClusterStatus RenderMaster::status(TimePoint now) const {
                                  .resyncs = scene_.distributor().resyncs(),
                                  .display = scene_.display().status(now),
                                  .contradictions = dispatcher_.contradictions(),
-                                 .caught_exceptions = guard_.caught()};
+                                 .caught_exceptions = guard_.caught(),
+                                 .verified_units = dispatcher_.verified_units()};
     for (const auto& [id, node] : nodes_.all()) {
         session::NodeStatus entry{
             .summary = {.id = id,

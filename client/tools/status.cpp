@@ -115,6 +115,7 @@ std::string as_json(const session::ClusterStatus& status) {
           {"film", status.wire_bytes.film}}},
         {"resyncs", status.resyncs},
         {"contradictions", status.contradictions},
+        {"verified_units", status.verified_units},
         {"caught_exceptions", status.caught_exceptions},
         {"live", live_value(status.scene)},
         {"display", display_value(status.display)},
@@ -140,6 +141,8 @@ void print_table(const session::ClusterStatus& status) {
             "master's log\n",
             count(status.dropped_messages), count(status.contradictions), count(status.caught_exceptions));
     }
+    if (status.verified_units > 0)
+        std::printf("%llu units verified by a second node\n", count(status.verified_units));
     if (const session::SceneStatus& live = status.scene; !live.title.empty()) {
         std::printf("%s '%s': %u members, %u views, %llu edits, %llu transactions\n",
                     live.exclusive ? "exclusive scene" : "live scene", live.title.c_str(), live.members,

@@ -55,16 +55,20 @@ void Dispatcher::deal(ViewId id, std::vector<NodeCapacity>& capacities, TimePoin
     if (suitable.empty()) return;
     for (const Assignment& assignment : pass->scheduler.assign(suitable, balancer_, now)) {
         NodeRecord& node = *nodes_.find(assignment.node);
-        if (auto opening = node.opening(pass->view, pass->hold_film))
-            outbox_.control(node.control, *std::move(opening));
-        node.pending[assignment.unit.id] = ++node.work_sequence;
-        outbox_.control(node.control, wire::Work{node.work_sequence, assignment.unit});
+        send_work(node, pass->view, pass->hold_film, assignment.unit);
         for (NodeCapacity& capacity : capacities) {
             if (capacity.node != assignment.node) continue;
             --capacity.free_slots;
             ++capacity.in_flight;
         }
     }
+}
+
+void Dispatcher::send_work(NodeRecord& node, const view::View& view, Duration hold_film,
+                           const view::WorkUnit& unit) {
+    if (auto opening = node.opening(view, hold_film)) outbox_.control(node.control, *std::move(opening));
+    node.pending[unit.id] = ++node.work_sequence;
+    outbox_.control(node.control, wire::Work{node.work_sequence, unit});
 }
 
 Dispatcher::Prospects Dispatcher::prospects(const view::View& view, const NodeRequirements& wanted) const {
@@ -187,6 +191,13 @@ std::vector<std::string> Dispatcher::left_out(ViewId pass) const {
 Duration Dispatcher::allowance(NodeId node) const {
     const StuckSettings& settings = nodes_.stuck();
     const double rate = balancer_.rate(node);
+    const auto predicted = [&](const Rect& tile, const frame::SampleBlock& block) {
+        constexpr double MaxSeconds = 86400.0;
+        if (rate <= 0.0) return settings.first_film;
+        const auto samples = static_cast<double>(block.count() * tile.pixel_count());
+        return std::chrono::duration_cast<Duration>(
+            std::chrono::duration<double>(std::min(MaxSeconds, settings.predicted_times * samples / rate)));
+    };
     Duration longest{};
     for (const auto& [view, pass] : passes_) {
         const bool may_compile = !pass.rendered_by.contains(node);
@@ -196,14 +207,11 @@ Duration Dispatcher::allowance(NodeId node) const {
                 break;
             }
             const view::WorkUnit& unit = pass.scheduler.ledger().find(id)->unit;
-            const auto samples = static_cast<double>(unit.block.count() * unit.tile.pixel_count());
-            if (rate <= 0.0) continue;
-            constexpr double MaxSeconds = 86400.0;
-            const std::chrono::duration<double> predicted(
-                std::min(MaxSeconds, settings.predicted_times * samples / rate));
-            longest = std::max(longest, std::chrono::duration_cast<Duration>(predicted));
+            longest = std::max(longest, predicted(unit.tile, unit.block));
         }
     }
+    for (const auto& [unit, task] : verifier_.tasks_of(node))
+        longest = std::max(longest, predicted(task->tile, task->block));
     return longest;
 }
 

@@ -328,6 +328,7 @@ void Views::advance(TimePoint now) {
 void Views::deal(TimePoint now) {
     std::vector<NodeCapacity> capacities = services_.dispatcher.capacities();
     picks_.deal(capacities, now);
+    services_.dispatcher.deal_verifications(capacities, now);
     std::vector<ViewState*> order;
     for (auto& [id, view] : table_.all()) {
         const bool restarts = !view.in_group() && view.restart_wanted && !table_.passes_paused &&

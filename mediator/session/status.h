@@ -123,6 +123,7 @@ struct ClusterStatus {
     DisplayStatus display;
     std::uint64_t contradictions = 0;     // nodes of one kind gave different bits for the same samples
     std::uint64_t caught_exceptions = 0;  // in the master's event loop: bugs, which it survived
+    std::uint64_t verified_units = 0;     // rendered again by another node, with the same bits
     static constexpr auto describe(auto row) {
         using Self = ClusterStatus;
         return std::tuple(row(1, "software", &Self::software), row(2, "version", &Self::version),
@@ -134,7 +135,8 @@ struct ClusterStatus {
                           row(12, "scene", &Self::scene), row(13, "resyncs", &Self::resyncs),
                           row(14, "display", &Self::display),
                           row(15, "contradictions", &Self::contradictions),
-                          row(16, "caught_exceptions", &Self::caught_exceptions));
+                          row(16, "caught_exceptions", &Self::caught_exceptions),
+                          row(19, "verified_units", &Self::verified_units));
     }
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <limits>
 
 #include "mediator/frame/resolve.h"
@@ -222,6 +223,66 @@ TEST_F(FaultyNodes, ANodeThatStopsInTheMiddleIsStuckAndOthersGetItsUnits) {
     EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
     EXPECT_GT(result.summary.units.lost, 0u);
     EXPECT_EQ(to_hex(frame::film_hash(*result.film())), honest_hash());
+}
+
+void verify_all(master::MasterSettings& settings) {
+    settings.verified_share = 1.0;
+}
+
+session::ViewRequest larger_request(std::uint32_t nodes) {
+    session::ViewRequest request = FaultyNodes::small_request();
+    request.view.width = 256;
+    request.view.height = 192;
+    request.view.window = {0, 0, 256, 192};
+    request.min_nodes = nodes;
+    return request;
+}
+
+TEST_F(FaultyNodes, VerifiedFilmIsThatOfHonestNodesAndIsMergedOnce) {
+    std::string hashes[2];
+    for (const bool verified : {false, true}) {
+        LoopbackCluster pair(verified ? verify_all : [](master::MasterSettings&) {});
+        for (int i = 0; i < 2; ++i) pair.add_node("null", {}, 2us);
+        const auto session = pair.batch(std::make_shared<scene::BlobStore>());
+        const client::ViewResult result = client::render(*session, larger_request(2), {}, {});
+        EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
+        hashes[verified] = to_hex(frame::film_hash(*result.film()));
+        EXPECT_EQ(result.summary.samples, 256u * 192u * 16u);
+        status = session->status();
+        EXPECT_EQ(status.verified_units > 0, verified) << status.verified_units;
+        EXPECT_EQ(status.contradictions, 0u);
+        expect_balanced();
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+TEST_F(FaultyNodes, ANodeThatLiesIsFoundByTheOthersAndQuarantined) {
+    LoopbackCluster trio(verify_all);
+    trio.add_node(hooked(
+        [](const auto&, backend::RenderResult& result) {
+            for (frame::FilmTile& block : result.blocks) {
+                std::uint32_t bits = std::bit_cast<std::uint32_t>(block.planes[0]);
+                block.planes[0] = std::bit_cast<float>(bits ^ 1u);
+            }
+        },
+        2us));
+    for (int i = 0; i < 2; ++i) trio.add_node(hooked([](const auto&, auto&) {}, 2us));
+    const auto session = trio.batch(std::make_shared<scene::BlobStore>());
+    const client::ViewResult result = client::render(*session, larger_request(3), {}, {});
+    EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
+    status = session->status();
+    EXPECT_GT(status.contradictions, 0u);
+    EXPECT_NE(quarantine("node-1").find("differs from that of two other nodes (unit "), std::string::npos)
+        << quarantine("node-1");
+    EXPECT_EQ(quarantine("node-2"), "");
+    EXPECT_EQ(quarantine("node-3"), "");
+    const std::vector<std::string> events = trio.events();
+    EXPECT_TRUE(std::ranges::any_of(events, [](const std::string& event) {
+        return event.find("node-1") != std::string::npos &&
+               event.find("gave different bits for unit") != std::string::npos &&
+               event.find("samples 0..") != std::string::npos;
+    }));
+    expect_balanced();
 }
 
 // Its test patterns do not get into pictures, whichever node comes first.
