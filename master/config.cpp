@@ -27,6 +27,10 @@ std::optional<int> parse_options(int argc, const char* const* argv, MasterOption
                 "seconds a frame is rendered on, and its picture kept, after its client was lost "
                 "(jobs of render --detach: until they are removed)",
                 options.orphan_seconds);
+    line.option("--verify",
+                "percent of the units that another node of the same kind renders again, to compare the bits; "
+                "a node that differs from two others is put into quarantine",
+                options.verify_percent);
     line.choice("--log-level", "log verbosity", options.log.level, cli::log_levels());
     line.option("--log-file", "write the log there instead of standard error", options.log.file);
     line.examples({"tessera keys ~/.tessera && tessera-master --keys ~/.tessera",
@@ -52,6 +56,8 @@ std::optional<int> parse_options(int argc, const char* const* argv, MasterOption
     }
     if (!(options.orphan_seconds >= 0.0 && options.orphan_seconds <= 1e6))
         return usage("--orphan must be between 0 and 1000000 seconds");
+    if (!(options.verify_percent >= 0.0 && options.verify_percent <= 100.0))
+        return usage("--verify must be between 0 and 100 percent");
     return std::nullopt;
 }
 

@@ -47,6 +47,7 @@ int serve(const master::MasterOptions& options) {
         std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options.orphan_seconds));
     settings.checkpoint_interval =
         std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options.checkpoint_seconds));
+    settings.verified_share = options.verify_percent / 100.0;
     settings.blob_limits.bytes_total = options.blob_quota_mib << 20;
     master::RenderMaster render_master(std::move(channel), std::make_shared<scene::BlobStore>(), clock,
                                        settings, event_log(log));

@@ -32,6 +32,7 @@ struct MasterSettings {
     Duration checkpoint_interval = std::chrono::seconds(10);
     wire::BlobLimits blob_limits;
     Duration collect_interval = std::chrono::seconds(10);  // of unused blobs; zero: never, for a shared store
+    double verified_share = 0.0;  // of the film of nodes, 0 to 1: see render/verifier.h
     std::size_t max_sessions = 256, max_nodes = 1024;
     std::size_t max_sessions_per_key = 64;
     std::size_t sessions_for_operators = 8;  // of max_sessions: others cannot lock them out

@@ -204,7 +204,8 @@ session::ClusterStatus RenderMaster::status(TimePoint now) const {
                                  .display = scene_.display().status(now),
                                  .contradictions = dispatcher_.contradictions(),
                                  .caught_exceptions = guard_.caught(),
-                                 .loop = monitor_.status()};
+                                 .loop = monitor_.status(),
+                                 .verified_units = dispatcher_.verified_units()};
     if (settings_.refused_traffic) {
         const net::RefusedTraffic refused = settings_.refused_traffic();
         reply.refused_handshakes = refused.handshakes;
@@ -224,7 +225,8 @@ session::ClusterStatus RenderMaster::status(TimePoint now) const {
             .samples_per_second = dispatcher_.rate(id) * std::max(1u, node.hello.concurrent_units),
             .round_trip_seconds = node.round_trip_seconds,
             .stuck = node.stuck,
-            .quarantine = {}};
+            .quarantine = {},
+            .idle_reason = dispatcher_.idle_reason(node)};
         if (const auto* held = dispatcher_.quarantine().find(node.identity(), now)) {
             entry.quarantine = held->reason;
             entry.quarantine_seconds = seconds(*held->until - now);

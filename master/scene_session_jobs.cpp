@@ -23,6 +23,7 @@ wire::SavedView without_film(const ViewState& view) {
             .owner_key = view.owner.key,
             .request = view.request,
             .scene_hash_of_film = {},
+            .kind = {},
             .blocks = {}};
 }
 

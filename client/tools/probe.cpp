@@ -95,7 +95,7 @@ Command probe_command(cli::CommandLine& program) {
     if (backend::has_device_choice()) {
         command.option("--device", "device to use: index or part of its name", options->device);
     }
-    command.flag("--reproducible", "as for frames rendered with --reproducible: AVX2 only",
+    command.flag("--reproducible", "as for frames rendered with --reproducible: pinned to AVX2",
                  options->reproducible);
     command.required("--pixel");
     command.examples({"tessera probe room.glb --pixel 320,180 --sample 7",

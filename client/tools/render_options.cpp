@@ -258,7 +258,9 @@ void RenderOptions::add_to(cli::CommandLine& command) {
                  save_statistics);
     command.choice("--policy", "how a frame is divided into work units", policy,
                    {"tiled", "cooperative", "mixed"});
-    command.flag("--reproducible", "bit-identical results on every x86-64-v3 machine: AVX2 only",
+    command.flag("--reproducible",
+                 "bit-identical results for any number of nodes: nodes of one kind (back-end, build, CPU "
+                 "vendor), pinned to AVX2",
                  reproducible);
     add_cluster_to(command, *this);
     command.option("--name", "name of the view, as for tessera set-filter --view NAME", name);

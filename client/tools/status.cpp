@@ -100,6 +100,7 @@ std::string as_json(const session::ClusterStatus& status) {
                          {"stuck", node.stuck},
                          {"quarantine", node.quarantine.empty() ? Json() : Json(node.quarantine)},
                          {"quarantine_seconds", node.quarantine_seconds},
+                         {"idle_reason", node.idle_reason.empty() ? Json() : Json(node.idle_reason)},
                          {"clock_offset_seconds", node.clock_offset_seconds},
                          {"clock_bound_seconds", node.clock_bound_seconds}});
     }
@@ -127,6 +128,7 @@ std::string as_json(const session::ClusterStatus& status) {
           {"film", status.wire_bytes.film}}},
         {"resyncs", status.resyncs},
         {"contradictions", status.contradictions},
+        {"verified_units", status.verified_units},
         {"caught_exceptions", status.caught_exceptions},
         {"refused_handshakes", status.refused_handshakes},
         {"loop", loop_value(status.loop)},
@@ -173,6 +175,8 @@ void print_table(const session::ClusterStatus& status) {
         1e3 * step_seconds(status.loop, 0.999), 1e3 * status.loop.longest_step_seconds,
         1e3 * status.loop.longest_cpu_seconds,
         status.loop.longest_part.empty() ? "none" : status.loop.longest_part.c_str());
+    if (status.verified_units > 0)
+        std::printf("%llu units verified by a second node\n", count(status.verified_units));
     if (const session::SceneStatus& live = status.scene; !live.title.empty()) {
         std::printf("%s '%s': %u members, %u views, %llu edits, %llu transactions\n",
                     live.exclusive ? "exclusive scene" : "live scene", live.title.c_str(), live.members,
@@ -202,6 +206,7 @@ void print_table(const session::ClusterStatus& status) {
         if (!node.quarantine.empty())
             std::printf("  in quarantine for %.0f s: %s; tessera node release %s ends it\n",
                         node.quarantine_seconds, node.quarantine.c_str(), node.summary.name.c_str());
+        if (!node.idle_reason.empty()) std::printf("  takes no part: %s\n", node.idle_reason.c_str());
     }
 }
 

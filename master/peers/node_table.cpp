@@ -4,6 +4,14 @@
 
 namespace tessera::master {
 
+namespace {
+
+bool has_null_backend(const wire::Hello& hello) {
+    return hello.backend == "null" || hello.kind.substr(0, hello.kind.find_first_of("-/")) == "null";
+}
+
+}  // namespace
+
 NodeCapacity NodeRecord::capacity() const {
     const auto on_the_way = static_cast<std::uint32_t>(pending.size());
     return {.node = id,
@@ -30,8 +38,16 @@ NodeRecord& NodeTable::add(NodeId id, std::uint64_t token, net::PeerId control, 
                       .user = std::move(user),
                       .hello = std::move(hello),
                       .liveness = net::Liveness(liveness_, now)};
+    record.is_null = has_null_backend(record.hello);
     record.last_progress_at = now;
-    return nodes_.insert_or_assign(id, std::move(record)).first->second;
+    remove(id);
+    renderers_ += record.is_null ? 0 : 1;
+    return nodes_.emplace(id, std::move(record)).first->second;
+}
+
+void NodeTable::remove(NodeId id) {
+    const auto node = nodes_.extract(id);
+    if (node && !node.mapped().is_null) --renderers_;
 }
 
 NodeRecord* NodeTable::find(NodeId id) {
@@ -58,6 +74,7 @@ NodeRecord* NodeTable::by_token(std::uint64_t token) {
 }
 
 void NodeTable::heartbeat(NodeRecord& node, const wire::Heartbeat& heartbeat, TimePoint now) {
+    const bool same_phase = node.state.phase == heartbeat.phase;
     node.state = heartbeat;
     node.heartbeat_at = now;
     node.leaving = node.leaving || heartbeat.phase == session::NodePhase::Leaving;
@@ -66,13 +83,15 @@ void NodeTable::heartbeat(NodeRecord& node, const wire::Heartbeat& heartbeat, Ti
     const auto round_trip =
         node.clock.heartbeat(heartbeat.sent_at, heartbeat.echo_sent_at, heartbeat.echo_delay, now);
     if (round_trip) node.round_trip_seconds = seconds(*round_trip);
-    const bool works =
-        heartbeat.phase == session::NodePhase::Rendering || heartbeat.phase == session::NodePhase::Building;
-    if (!works || heartbeat.progress != node.last_progress) {
+    const bool builds = heartbeat.phase == session::NodePhase::Building;
+    const bool works = builds || heartbeat.phase == session::NodePhase::Rendering;
+    if (!works || !same_phase || heartbeat.progress != node.last_progress) {
         node.last_progress = heartbeat.progress;
         node.last_progress_at = now;
     }
-    node.stuck = works && now - node.last_progress_at > stuck_.allowance;
+    node.stuck = works && now - node.last_progress_at >
+                              (builds ? stuck_.building : std::max(stuck_.allowance, node.allowance));
+    node.stuck_is_announced = node.stuck_is_announced && node.stuck;
 }
 
 std::vector<NodeId> NodeTable::timed_out(TimePoint now) const {

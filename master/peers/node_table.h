@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct NodeRecord {
     std::optional<net::PeerId> bulk;  // known after its BulkHello
     std::string user;                 // of its key; a token works only for the same user
     wire::Hello hello;
+    bool is_null = false;  // its back-end renders test patterns instead of the scene
     net::Liveness liveness;
     wire::Heartbeat state;  // the latest, and when it came: what our next heartbeat echoes
     TimePoint heartbeat_at{};
@@ -46,7 +48,10 @@ struct NodeRecord {
     net::PeerClock clock;
     std::uint64_t last_progress = 0;  // for stuck detection
     TimePoint last_progress_at{};
+    Duration allowance{};  // of the units that it has; see Dispatcher::allowance()
     bool stuck = false;
+    bool stuck_is_announced = false;
+    std::set<std::string> announced;  // why it takes no part, each reason once
 
     Quarantine::Key identity() const { return {user, hello.name}; }
 
@@ -57,8 +62,12 @@ struct NodeRecord {
     NodeCapacity capacity() const;
 };
 
+// How long a node whose heartbeats arrive may make no progress.
 struct StuckSettings {
-    Duration allowance = std::chrono::seconds(30);  // without progress while rendering or building
+    Duration allowance = std::chrono::seconds(30);  // while rendering; more for long units:
+    double predicted_times = 10.0;                  // as often as a unit should take
+    Duration first_film = std::chrono::minutes(5);  // until its first film of a pass: it may compile kernels
+    Duration building = std::chrono::minutes(30);   // while it builds the scene
 };
 
 // Nodes by id, control peer and bulk peer. Pure: driven by events with their times.
@@ -69,7 +78,10 @@ class NodeTable {
 
     NodeRecord& add(NodeId id, std::uint64_t token, net::PeerId control, std::string user, wire::Hello hello,
                     TimePoint now);
-    void remove(NodeId id) { nodes_.erase(id); }
+    void remove(NodeId id);
+    const StuckSettings& stuck() const { return stuck_; }
+    // There is no node that renders the scene itself.
+    bool all_are_null() const { return renderers_ == 0; }
     NodeRecord* by_control(net::PeerId peer);
     NodeRecord* by_bulk(net::PeerId peer);
     NodeRecord* by_token(std::uint64_t token);
@@ -88,6 +100,7 @@ class NodeTable {
     net::LivenessSettings liveness_;
     StuckSettings stuck_;
     std::map<NodeId, NodeRecord> nodes_;
+    std::size_t renderers_ = 0;  // nodes that are not null
 };
 
 }  // namespace tessera::master

@@ -8,7 +8,7 @@ namespace {
 constexpr std::size_t MaxEntries = 4096;
 }
 
-bool Quarantine::fault(const Key& node, const std::string& reason, TimePoint now) {
+Quarantine::Entry& Quarantine::note(const Key& node, const std::string& reason, TimePoint now) {
     if (entries_.size() >= MaxEntries && !entries_.contains(node)) {
         entries_.erase(std::min_element(entries_.begin(), entries_.end(), [](const auto& a, const auto& b) {
             return a.second.last_fault < b.second.last_fault;
@@ -19,14 +19,27 @@ bool Quarantine::fault(const Key& node, const std::string& reason, TimePoint now
     if (now - entry.last_fault > 2 * settings_.longest) entry.times = 0;
     entry.last_fault = now;
     entry.reason = reason;
+    return entry;
+}
+
+bool Quarantine::fault(const Key& node, const std::string& reason, TimePoint now) {
+    Entry& entry = note(node, reason, now);
     if (++entry.faults < settings_.fault_limit) return false;
+    begin(entry, now);
+    return true;
+}
+
+void Quarantine::begin(const Key& node, const std::string& reason, TimePoint now) {
+    begin(note(node, reason, now), now);
+}
+
+void Quarantine::begin(Entry& entry, TimePoint now) {
     // The next fault after its return is enough for another time.
     entry.faults = settings_.fault_limit - 1;
     Duration time = settings_.first;
     for (std::uint32_t i = 0; i < entry.times && time < settings_.longest; ++i) time *= 2;
     ++entry.times;
     entry.until = now + std::min(time, settings_.longest);
-    return true;
 }
 
 const Quarantine::Entry* Quarantine::find(const Key& node, TimePoint now) const {

@@ -35,12 +35,17 @@ class Quarantine {
 
     // Returns true if the node is in quarantine from now on.
     bool fault(const Key& node, const std::string& reason, TimePoint now);
+    // Puts it into quarantine at once: there is a proof.
+    void begin(const Key& node, const std::string& reason, TimePoint now);
     // Null: it is not in quarantine.
     const Entry* find(const Key& node, TimePoint now) const;
     // Ends that of all nodes with this name. False: none is in quarantine.
     bool release(const std::string& name, TimePoint now);
 
   private:
+    Entry& note(const Key& node, const std::string& reason, TimePoint now);
+    void begin(Entry& entry, TimePoint now);
+
     QuarantineSettings settings_;
     std::map<Key, Entry> entries_;  // bounded
 };

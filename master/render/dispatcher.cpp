@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "master/peers/suitable_nodes.h"
-
 namespace tessera::master {
 
 namespace {
@@ -11,12 +9,13 @@ constexpr std::uint64_t UnitsPerPass = std::uint64_t{1} << 32;
 }
 
 Dispatcher::Dispatcher(Duration overdue_patience, const Clock& clock, NodeTable& nodes, Outbox& outbox,
-                       EventSink events)
+                       EventSink events, const VerifierSettings& verifier)
     : overdue_patience_(overdue_patience),
       clock_(clock),
       nodes_(nodes),
       outbox_(outbox),
-      events_(std::move(events)) {}
+      events_(std::move(events)),
+      verifier_(verifier) {}
 
 // ---- passes ----
 
@@ -28,6 +27,7 @@ Scheduler& Dispatcher::begin(const view::View& view, const PlanSettings& plan,
         by_first_unit_.erase(before->first_unit);
         passes_.erase(view.id);
     }
+    send_cancellations(verifier_.forget(Verifier::view_of(view.id)));
     const UnitId first{next_unit_};
     next_unit_ += UnitsPerPass;
     by_first_unit_[first] = view.id;
@@ -57,6 +57,9 @@ void Dispatcher::revise(const view::View& view) {
     Active* pass = active(view.id);
     if (pass == nullptr) return;
     pass->view = view;
+    pass->verification.reset();
+    send_cancellations(verifier_.forget(Verifier::view_of(view.id)));
+    pass->rendered_by.clear();  // other channels are other kernels
     send_cancellations(pass->scheduler.revise(view.revision));
 }
 
@@ -64,6 +67,7 @@ void Dispatcher::follow(ViewId pass, Version version) {
     if (Active* followed = active(pass)) {
         followed->requirements.version = version;
         followed->scheduler.follow(version);
+        verifier_.follow(Verifier::view_of(pass), version);
     }
 }
 
@@ -89,74 +93,7 @@ Dispatcher::Active* Dispatcher::holder(UnitId unit) {
     return unit.value - first.value < UnitsPerPass ? active(pass) : nullptr;
 }
 
-// ---- nodes ----
-
-bool Dispatcher::suits(const NodeRecord& node, const view::View& view,
-                       const NodeRequirements& requirements) const {
-    return master::suits(node, view, requirements.version) &&
-           (!requirements.reproducible || node.hello.reproducible);
-}
-
-bool Dispatcher::ready(const NodeRecord& node, const view::View& view,
-                       const NodeRequirements& requirements) const {
-    return suits(node, view, requirements) && master::ready(node, view, requirements.version);
-}
-
-std::vector<NodeCapacity> Dispatcher::capacities() const {
-    std::vector<NodeCapacity> capacities;
-    for (const auto& [id, node] : nodes_.all()) capacities.push_back(node.capacity());
-    return capacities;
-}
-
-void Dispatcher::deal(ViewId id, std::vector<NodeCapacity>& capacities, TimePoint now) {
-    Active* pass = active(id);
-    if (pass == nullptr) return;
-    // A node that fails much gets no more until it is known whose fault that is, unless all do.
-    constexpr std::uint32_t MaxUnexplained = 3;
-    std::vector<NodeCapacity> suitable, suspect;
-    for (const NodeCapacity& capacity : capacities) {
-        if (!ready(*nodes_.find(capacity.node), pass->view, pass->requirements)) continue;
-        const bool fails = unexplained_failures(capacity.node) >= MaxUnexplained;
-        (fails ? suspect : suitable).push_back(capacity);
-    }
-    if (suitable.empty()) suitable = std::move(suspect);
-    if (suitable.empty()) return;
-    for (const Assignment& assignment : pass->scheduler.assign(suitable, balancer_, now)) {
-        NodeRecord& node = *nodes_.find(assignment.node);
-        if (auto opening = node.opening(pass->view, pass->hold_film))
-            outbox_.control(node.control, *std::move(opening));
-        node.pending[assignment.unit.id] = ++node.work_sequence;
-        outbox_.control(node.control, wire::Work{node.work_sequence, assignment.unit});
-        for (NodeCapacity& capacity : capacities) {
-            if (capacity.node != assignment.node) continue;
-            --capacity.free_slots;
-            ++capacity.in_flight;
-        }
-    }
-}
-
-Dispatcher::Prospects Dispatcher::prospects(const view::View& view,
-                                            const NodeRequirements& requirements) const {
-    Prospects prospects;
-    for (const auto& [id, node] : nodes_.all()) {
-        if (!suits(node, view, requirements)) continue;
-        ++prospects.suitable;
-        prospects.workers += std::max(1u, node.hello.concurrent_units);
-        prospects.building += node.state.phase == session::NodePhase::Building ? 1 : 0;
-        prospects.scene_bytes += node.state.scene_bytes;
-        const double rate = balancer_.rate(id);
-        double& slowest = prospects.slowest_worker;
-        if (rate > 0.0) slowest = slowest > 0.0 ? std::min(slowest, rate) : rate;
-        if (!ready(node, view, requirements)) continue;
-        ++prospects.ready;
-        prospects.samples_per_second += node.capacity().workers * rate;
-    }
-    return prospects;
-}
-
-std::string Dispatcher::obstacles(const view::View& view, Version version) const {
-    return master::obstacles(nodes_, view, version);
-}
+// ---- messages ----
 
 void Dispatcher::send_cancellations(const std::vector<Cancellation>& cancellations) {
     constexpr std::size_t PerMessage = 1024, MaxUnconfirmed = 4096;
@@ -188,16 +125,22 @@ void Dispatcher::collect_overdue(TimePoint now) {
             node.quarantined = false;
             events_({wire::Severity::Info, "node " + node.hello.name + " leaves quarantine"});
         }
-        if (passes_.empty()) continue;
-        std::vector<UnitId> held;
+        announce_idle(node);
+        close_verified_views(node);
+        std::vector<UnitId> held = verifier_.held_by(id);
+        if (passes_.empty() && held.empty()) continue;
         for (const auto& [view, pass] : passes_) {
             const auto units = pass.scheduler.held_by(id);
             held.insert(held.end(), units.begin(), units.end());
         }
         for (const UnitId unit : NodeTable::overdue(node, held, now, overdue_patience_)) {
+            verifier_.end(unit, id);
             if (Active* pass = holder(unit)) pass->scheduler.end(unit, id, Fate::Lost);
         }
+        node.allowance = allowance(id);
         if (!node.stuck) continue;
+        announce_stuck(node, now);
+        verifier_.node_gone(id);
         for (auto& [view, pass] : passes_) pass.scheduler.node_gone(id, node.capacity().workers);
     }
 }
@@ -205,6 +148,14 @@ void Dispatcher::collect_overdue(TimePoint now) {
 void Dispatcher::released(NodeRecord& node, const wire::UnitReleased& release, TimePoint now) {
     node.pending.erase(release.unit);
     confirm_cancelled(release.unit, now);
+    if (Verifier::owns(release.unit)) {
+        if (release.reason == wire::ReleaseReason::UnknownView) {
+            if (const auto* task = verifier_.held(release.unit, node.id)) node.views.erase(task->view->id);
+        }
+        if (verifier_.end(release.unit, node.id) && release.reason == wire::ReleaseReason::Failed)
+            fault(node, "it failed what another node rendered: " + release.message, now);
+        return;
+    }
     Active* pass = holder(release.unit);
     if (pass == nullptr) return;
     switch (release.reason) {
@@ -229,9 +180,12 @@ void Dispatcher::released(NodeRecord& node, const wire::UnitReleased& release, T
 
 // Its film may still be in flight on the bulk link; the overdue check catches it if it never arrives.
 void Dispatcher::goodbye(NodeRecord& node, const wire::Goodbye& goodbye) {
+    const auto& sent = goodbye.units_sent;
+    for (const UnitId unit : verifier_.held_by(node.id)) {
+        if (std::find(sent.begin(), sent.end(), unit) == sent.end()) verifier_.end(unit, node.id);
+    }
     for (auto& [view, pass] : passes_) {
         for (const UnitId unit : pass.scheduler.held_by(node.id)) {
-            const auto& sent = goodbye.units_sent;
             if (std::find(sent.begin(), sent.end(), unit) != sent.end()) continue;
             pass.scheduler.end(unit, node.id, Fate::Cancelled);
         }
@@ -240,6 +194,7 @@ void Dispatcher::goodbye(NodeRecord& node, const wire::Goodbye& goodbye) {
 
 void Dispatcher::node_gone(NodeId id, Departure departure, TimePoint now) {
     balancer_.forget(id);
+    verifier_.node_gone(id);
     cancelled_.clear();  // some will never be confirmed
     const NodeRecord* node = nodes_.find(id);
     const std::uint32_t rendering =

@@ -12,6 +12,7 @@
 #include "master/render/percentiles.h"
 #include "master/render/render_outputs.h"
 #include "master/render/schedule/scheduler.h"
+#include "master/render/verifier.h"
 #include "mediator/wire/envelope.h"
 
 namespace tessera::master {
@@ -19,7 +20,8 @@ namespace tessera::master {
 // Which nodes may render a pass.
 struct NodeRequirements {
     Version version;            // of the scene that they must hold
-    bool reproducible = false;  // only nodes pinned to AVX2
+    bool reproducible = false;  // only nodes of one kind, pinned to AVX2
+    std::string kind{};         // that one; "" = the kind that renders most, see leading_kind()
 };
 
 // Assigns the units of passes to nodes: deals units, takes back released, lost and orphaned ones, cancels those that
@@ -29,7 +31,7 @@ class Dispatcher {
   public:
     // `overdue_patience`: a unit that the node does not hold and whose film has not arrived for this long is lost.
     Dispatcher(Duration overdue_patience, const Clock& clock, NodeTable& nodes, Outbox& outbox,
-               EventSink events);
+               EventSink events, const VerifierSettings& verifier = {});
 
     // ---- passes ----
     // Deals units of the pass from now on. An earlier pass with its id ends; nodes replace their view.
@@ -47,6 +49,8 @@ class Dispatcher {
     std::vector<NodeCapacity> capacities() const;
     // To suitable nodes that are ready; reduces `capacities`.
     void deal(ViewId pass, std::vector<NodeCapacity>& capacities, TimePoint now);
+    // Film to be verified, to other nodes than those that sent it.
+    void deal_verifications(std::vector<NodeCapacity>& capacities, TimePoint now);
     // How many nodes could render the view, and how many are ready to.
     struct Prospects {
         std::uint32_t suitable = 0, ready = 0;
@@ -57,7 +61,16 @@ class Dispatcher {
         std::uint64_t scene_bytes = 0;    // that suitable nodes have received; grows while they sync
     };
     Prospects prospects(const view::View& view, const NodeRequirements& requirements) const;
-    std::string obstacles(const view::View& view, Version version) const;
+    // The kind whose suitable nodes, pinned to AVX2, render most together; "" = there is none.
+    std::string leading_kind(const view::View& view, Version version) const;
+    std::string kind(ViewId pass) const;  // of a reproducible pass, from its first unit on; else ""
+    // Why nodes cannot render the view, each reason with a final "; ". Empty if none is known.
+    std::string obstacles(const view::View& view, const NodeRequirements& requirements) const;
+    // Why the node gets no work of passes that it could render otherwise; "" = it does.
+    std::string idle_reason(const NodeRecord& node) const;
+    // Its film has test patterns of null nodes, but now there are nodes that render the scene.
+    bool is_superseded(ViewId pass) const;
+    std::vector<std::string> left_out(ViewId pass) const;  // "node b (kind X) takes no part: ..."
     std::size_t node_count() const { return nodes_.all().size(); }
     double rate(NodeId node) const { return balancer_.rate(node); }  // pixel samples a second of one worker
 
@@ -89,6 +102,7 @@ class Dispatcher {
     session::UnitCounts counts() const;                           // of all passes, including current ones
     std::uint64_t refused_film() const { return refused_film_; }  // malformed, or not asked for
     std::uint64_t contradictions() const { return contradictions_; }
+    std::uint64_t verified_units() const { return verified_units_; }
     // From the cancellation to the node's confirmation.
     const Percentiles& cancellations() const { return cancellations_; }
 
@@ -99,19 +113,36 @@ class Dispatcher {
         Duration hold_film{};
         UnitId first_unit;  // its units have UnitsPerPass ids from this one on
         Scheduler scheduler;
-        std::set<std::string> kinds{};  // of nodes whose film is in it
+        std::set<std::string> kinds{};   // of nodes whose film is in it
+        std::set<NodeId> rendered_by{};  // nodes that have sent film, so that their kernels are compiled
+        std::shared_ptr<const view::View> verification{};  // its view, for units that verify film
+        bool has_null_film = false, has_other_film = false;
     };
     Active* active(ViewId pass);
     Active* holder(UnitId unit);
     bool suits(const NodeRecord& node, const view::View& view, const NodeRequirements& requirements) const;
     bool ready(const NodeRecord& node, const view::View& view, const NodeRequirements& requirements) const;
+    bool may_use_null_nodes(const view::View& view) const;
+    std::string why_left_out(const NodeRecord& node, const Active& pass) const;
+    void announce_idle(NodeRecord& node);
+    Duration allowance(NodeId node) const;
+    void announce_stuck(NodeRecord& node, TimePoint now);
     void send_cancellations(const std::vector<Cancellation>& cancellations);
     void confirm_cancelled(UnitId unit, TimePoint now);
     std::uint32_t unexplained_failures(NodeId node) const;
     void fault(NodeRecord& node, const std::string& reason, TimePoint now);
+    void start_quarantine(NodeRecord& node, const std::string& reason, TimePoint now);
     void take_explained(Scheduler& scheduler, TimePoint now);
     void take_units_back(const NodeRecord& node, Fate fate);
     void film_is_taken(NodeId node, std::uint64_t bytes);
+    void send_work(NodeRecord& node, const view::View& view, Duration hold_film, const view::WorkUnit& unit);
+    bool is_to_be_verified(const NodeRecord& node, const Active& pass);
+    void verify(Active& pass, const MergeReport& report, const NodeRecord& node, TimePoint now);
+    std::optional<Admission> admit_verification(NodeRecord& node, const wire::FilmHead& head,
+                                                std::size_t bytes, TimePoint now);
+    void take_verification(const MergeReport& report, TimePoint now);
+    void condemn(const Verifier::Witness& odd, const std::string& samples, TimePoint now);
+    void close_verified_views(NodeRecord& node);
     void report_contradiction(const Active& pass, const MergeReport& report, const NodeRecord& node);
 
     Duration overdue_patience_;
@@ -125,7 +156,8 @@ class Dispatcher {
     std::uint64_t next_unit_ = 1;
     session::UnitCounts counts_;  // of passes that have ended
     Quarantine quarantine_;
-    std::uint64_t refused_film_ = 0, contradictions_ = 0;
+    Verifier verifier_;
+    std::uint64_t refused_film_ = 0, contradictions_ = 0, verified_units_ = 0;
     std::map<UnitId, TimePoint> cancelled_;  // not confirmed yet
     Percentiles cancellations_;
 };

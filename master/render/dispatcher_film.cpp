@@ -7,6 +7,7 @@ namespace tessera::master {
 
 std::optional<Admission> Dispatcher::admit(NodeRecord& node, const wire::FilmHead& head, std::size_t bytes,
                                            TimePoint now) {
+    if (Verifier::is_verification(head.view)) return admit_verification(node, head, bytes, now);
     Active* pass = active(head.view);
     const bool is_stale = pass == nullptr || pass->view.revision != head.revision;
     if (is_stale || node.quarantined) {
@@ -18,7 +19,10 @@ std::optional<Admission> Dispatcher::admit(NodeRecord& node, const wire::FilmHea
         return std::nullopt;
     }
     Admission admission = pass->scheduler.admit(node.id, {head.unit, head.version, head.rect, head.block});
-    if (admission.problem.empty()) return admission;
+    if (admission.problem.empty()) {
+        if (is_to_be_verified(node, *pass)) admission.use = Admission::Use::MergeAndHash;
+        return admission;
+    }
     malformed_film(node, admission.problem, bytes, now);
     return std::nullopt;
 }
@@ -33,6 +37,10 @@ void Dispatcher::malformed_film(NodeRecord& node, const std::string& problem, st
 Dispatcher::Taken Dispatcher::take(const MergeReport& report, TimePoint now) {
     film_is_taken(report.node, report.bytes);
     confirm_cancelled(report.unit, now);  // it was finished already
+    if (Verifier::is_verification(report.view)) {
+        take_verification(report, now);
+        return Taken::Dropped;
+    }
     Active* pass = report.stale ? nullptr : active(report.view);
     if (pass == nullptr || pass->view.revision != report.revision) return Taken::Dropped;
     Scheduler& scheduler = pass->scheduler;
@@ -47,6 +55,7 @@ Dispatcher::Taken Dispatcher::take(const MergeReport& report, TimePoint now) {
         if (node != nullptr) fault(*node, "it sent damaged film: " + problem, now);
         return Taken::Dropped;
     }
+    pass->rendered_by.insert(report.node);
     Taken taken = Taken::Known;
     switch (report.result.outcome) {
         case FrameAssembler::Outcome::Overlap:
@@ -57,7 +66,11 @@ Dispatcher::Taken Dispatcher::take(const MergeReport& report, TimePoint now) {
             break;
         case FrameAssembler::Outcome::Merged:
             taken = Taken::New;
-            if (node != nullptr) pass->kinds.insert(node->hello.kind);
+            if (node != nullptr) {
+                pass->kinds.insert(node->hello.kind);
+                if (report.bits) verify(*pass, report, *node, now);
+                (node->is_null ? pass->has_null_film : pass->has_other_film) = true;
+            }
             break;
         case FrameAssembler::Outcome::Duplicate:
         case FrameAssembler::Outcome::Misfit:
@@ -126,7 +139,10 @@ void Dispatcher::take_explained(Scheduler& scheduler, TimePoint now) {
 
 void Dispatcher::fault(NodeRecord& node, const std::string& reason, TimePoint now) {
     events_({wire::Severity::Warning, "node " + node.hello.name + ": " + reason});
-    if (!quarantine_.fault(node.identity(), reason, now)) return;
+    if (quarantine_.fault(node.identity(), reason, now)) start_quarantine(node, reason, now);
+}
+
+void Dispatcher::start_quarantine(NodeRecord& node, const std::string& reason, TimePoint now) {
     node.quarantined = true;
     const Duration time = *quarantine_.find(node.identity(), now)->until - now;
     events_({wire::Severity::Error,
@@ -138,6 +154,8 @@ void Dispatcher::fault(NodeRecord& node, const std::string& reason, TimePoint no
 
 void Dispatcher::take_units_back(const NodeRecord& node, Fate fate) {
     std::vector<Cancellation> cancellations;
+    for (const UnitId unit : verifier_.held_by(node.id)) cancellations.push_back({node.id, unit});
+    verifier_.node_gone(node.id);
     for (auto& [view, pass] : passes_) {
         for (const UnitId unit : pass.scheduler.held_by(node.id)) {
             pass.scheduler.end(unit, node.id, fate);

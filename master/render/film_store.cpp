@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "mediator/frame/resolve.h"
+
 namespace tessera::master {
 
 FilmStore::FilmStore(RenderOutputs& outputs)
@@ -132,6 +134,8 @@ void FilmStore::perform(Film& task) {
     report.units = part->units;
     report.rays = part->rays;
     report.busy = std::chrono::nanoseconds(part->busy_ns);
+    if (task.admission.use != Admission::Use::Merge) report.bits = frame::film_hash(part->film);
+    if (task.admission.use == Admission::Use::Compare) return outputs_.put(std::move(report));
     OpenFilm* opened = film(part->view);
     report.stale = opened == nullptr || part->revision != opened->revision;
     if (!report.stale)

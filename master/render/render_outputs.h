@@ -29,8 +29,9 @@ struct MergeReport {
     std::uint64_t pixel_samples = 0, nonfinite = 0, rays = 0;
     Duration busy{};
     FrameAssembler::Result result;
-    bool stale = false;   // of a view or revision that is not being assembled
-    std::string problem;  // not empty: its content is damaged or impossible
+    std::optional<Hash256> bits{};  // of its film, if Admission::use asks for it
+    bool stale = false;             // of a view or revision that is not being assembled
+    std::string problem;            // not empty: its content is damaged or impossible
 };
 // One merged tile of a frame, encoded for a client.
 struct EncodedTile {

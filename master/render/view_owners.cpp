@@ -72,7 +72,8 @@ void Views::restore(std::vector<wire::SavedView>&& saved, Version version, Hash1
         // Film of another scene is useless, and a view with a time limit must start over.
         if (old.blocks.empty() || old.scene_hash_of_film != scene_hash || view.request.stop.has_clock())
             continue;
-        runner_.resume(view, std::move(old.blocks), now);
+        if (request.reproducible && old.kind.empty()) continue;  // by which nodes is unknown
+        runner_.resume(view, std::move(old.blocks), old.kind, now);
     }
 }
 

@@ -24,7 +24,8 @@ void ViewRunner::restart(ViewState& view, TimePoint now) {
     wait_for_nodes(view, now);
 }
 
-void ViewRunner::resume(ViewState& view, std::vector<frame::FilmTile>&& blocks, TimePoint now) {
+void ViewRunner::resume(ViewState& view, std::vector<frame::FilmTile>&& blocks, const std::string& kind,
+                        TimePoint now) {
     view.restart_wanted = false;
     ++view.revision;
     view.camera_revision = view.asked_revision;
@@ -32,6 +33,7 @@ void ViewRunner::resume(ViewState& view, std::vector<frame::FilmTile>&& blocks, 
                 .started = now,
                 .rendering_since = now,
                 .without_nodes_since = now,
+                .kind = kind,
                 .cost_key = cost_key(view.request),
                 .bytes_before = views_.bytes_at_start};
     view.passes = passes_of(view);
@@ -57,8 +59,8 @@ void ViewRunner::wait_for_nodes(ViewState& view, TimePoint now) {
         return;
     decide(
         view, Outcome::NoNodes,
-        passes_.dispatcher.obstacles(view.request.view, view.version) + std::to_string(prospects.ready) +
-            " of " + std::to_string(view.request.min_nodes) +
+        passes_.dispatcher.obstacles(view.request.view, requirements(view)) +
+            std::to_string(prospects.ready) + " of " + std::to_string(view.request.min_nodes) +
             (enough ? " nodes are ready, and the others do not receive the scene: see the log of their master"
                     : " nodes are ready: start more nodes or ask for fewer with --wait-nodes"),
         now);
@@ -154,7 +156,7 @@ void ViewRunner::begin_pass(ViewState& view, std::vector<frame::FilmTile>&& bloc
 
 void ViewRunner::advance(ViewState& view, TimePoint now) {
     Run& run = view.run;
-    if (run.is_over()) return;
+    if (drops_test_patterns(view) || run.is_over()) return;
     if (view.passes.empty()) {
         if (!view.restart_wanted && !run.outcome && !run.is_rendering()) wait_for_nodes(view, now);
         return;
@@ -168,12 +170,25 @@ void ViewRunner::advance(ViewState& view, TimePoint now) {
     }
 }
 
+// Null nodes began the picture, and a node that renders the scene has joined: the view starts over without them.
+bool ViewRunner::drops_test_patterns(ViewState& view) {
+    const bool may_restart = !view.passes.empty() && (!view.run.outcome || view.shows_all());
+    if (!may_restart || !passes_.dispatcher.is_superseded(view.pass().view.id)) return false;
+    events_({wire::Severity::Info,
+             "view " + view.name + " starts over: its film has test patterns of null nodes"});
+    passes_.end_all(view);
+    view.restart_wanted = true;
+    return true;
+}
+
 void ViewRunner::observe(ViewState& view, TimePoint now) {
     const Scheduler& pass = *passes_.dispatcher.find(view.pass().view.id);
     Run& run = view.run;
     run.samples = pass.merged_samples();
     run.units = pass.counts();
     run.seen_at = now;
+    if (view.request.reproducible && run.kind.empty())
+        run.kind = passes_.dispatcher.kind(view.pass().view.id);
     const bool is_picture = view.pass().kind != Pass::Kind::Features;
     if (!run.first_picture && is_picture && pass.tiles_without_samples() == 0) run.first_picture = now;
 }
@@ -212,8 +227,12 @@ void ViewRunner::advance_picture(ViewState& view, TimePoint now) {
             decide(view, Outcome::TimeUp, {}, now);
         } else if (view.request.wait_limit > Duration::zero() &&
                    now - run.without_nodes_since >= view.request.wait_limit) {
-            decide(view, Outcome::NoNodes,
-                   "all nodes have disconnected: the samples merged so far are delivered", now);
+            decide(
+                view, Outcome::NoNodes,
+                (run.kind.empty() ? "all nodes"
+                                  : "the frame is reproducible on kind " + run.kind + ", and all its nodes") +
+                    " have disconnected: the samples merged so far are delivered",
+                now);
         }
     }
     if (run.outcome && !run.is_over() && (scheduler.idle() || now - run.outcome_at > settings_.stop_grace))
@@ -269,7 +288,10 @@ void ViewRunner::decide(ViewState& view, Outcome outcome, std::string message, T
 
 void ViewRunner::finish(ViewState& view, TimePoint now) {
     Run& run = view.run;
-    if (!view.passes.empty()) observe(view, now);
+    if (!view.passes.empty()) {
+        observe(view, now);
+        run.left_out = passes_.dispatcher.left_out(view.pass().view.id);
+    }
     const bool is_awaited = delivery_.watchers(view.id) > 0;
     run.phase = is_awaited && has_picture(view, view.request.picture) ? Phase::Filtering : Phase::Delivering;
     if (run.phase == Phase::Delivering) run.ended = now;
@@ -385,7 +407,7 @@ void ViewRunner::notify_waiting(ViewState& view, TimePoint now) {
     const std::size_t count = passes_.dispatcher.node_count();
     notify_owner(view, "view " + view.name + " waits: " +
                            (count == 0 ? "there are no nodes: start some with tessera-node"
-                                       : passes_.dispatcher.obstacles(view.request.view, view.version) +
+                                       : passes_.dispatcher.obstacles(view.request.view, requirements(view)) +
                                              "none of " + std::to_string(count) + " nodes can render it"));
 }
 

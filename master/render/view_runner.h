@@ -46,8 +46,9 @@ class ViewRunner {
           events_(std::move(events)) {}
 
     void restart(ViewState& view, TimePoint now);
-    // Begins with the last pass and its existing film.
-    void resume(ViewState& view, std::vector<frame::FilmTile>&& blocks, TimePoint now);
+    // Begins with the last pass and its existing film; of nodes of `kind`, if the view is reproducible.
+    void resume(ViewState& view, std::vector<frame::FilmTile>&& blocks, const std::string& kind,
+                TimePoint now);
     // Called when time has passed or samples have arrived.
     void advance(ViewState& view, TimePoint now);
     void took(ViewState& view, const MergeReport& report, Dispatcher::Taken taken, TimePoint now);
@@ -77,6 +78,7 @@ class ViewRunner {
     PlanSettings plan_of(const ViewState& view) const;
     void advance_to_next_pass(ViewState& view, TimePoint now);
     void advance_picture(ViewState& view, TimePoint now);
+    bool drops_test_patterns(ViewState& view);
     void observe(ViewState& view, TimePoint now);
     void collect_failed_tiles(ViewState& view);
     bool fails_everywhere(const ViewState& view) const;
@@ -87,7 +89,7 @@ class ViewRunner {
     void send_progress(ViewState& view, TimePoint now);
     void notify_owner(const ViewState& view, const std::string& text);
     NodeRequirements requirements(const ViewState& view) const {
-        return {view.version, view.request.reproducible};
+        return {view.version, view.request.reproducible, view.run.kind};
     }
 
     const ViewSettings& settings_;

@@ -18,6 +18,7 @@ void ViewSaver::save(Hash128 scene_hash) {
                  .owner_key = view.owner.key,
                  .request = view.request,
                  .scene_hash_of_film = scene_hash,
+                 .kind = view.run.kind,
                  .blocks = {}};
         const Scheduler* pass = accumulating(view);
         if (pass == nullptr || pass->merged_samples() == 0) continue;

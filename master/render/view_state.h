@@ -41,6 +41,8 @@ struct Run {
     std::uint64_t synced_bytes = 0;        // by nodes that sync, when that was last checked
     std::optional<TimePoint> ready_since;  // with a budget: the nodes are ready
     std::optional<TimePoint> deadline;     // of sampling
+    std::string kind;                      // of the nodes of a reproducible frame, once chosen
+    std::vector<std::string> left_out;     // nodes that take no part, and why; when the frame ends
     std::string cost_key;                  // with a budget: key of the predicted cost (time_budget.h)
     double predicted_seconds = 0.0;        // with a budget: from the deadline to the encoded picture
     bool calibrating = false;

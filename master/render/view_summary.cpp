@@ -89,6 +89,13 @@ net::Bytes encoded(wire::ViewDone done) {
 void describe(const ViewState& view, session::PictureSummary& picture) {
     picture.seconds_predicted = view.run.predicted_seconds;
     picture.scale = view.run.scale;
+    constexpr std::size_t MaxLeftOut = 8;
+    const std::vector<std::string>& left_out = view.run.left_out;
+    picture.notes.insert(
+        picture.notes.end(), left_out.begin(),
+        left_out.begin() + static_cast<std::ptrdiff_t>(std::min(left_out.size(), MaxLeftOut)));
+    if (left_out.size() > MaxLeftOut)
+        picture.notes.push_back(std::to_string(left_out.size() - MaxLeftOut) + " more nodes take no part");
     if (view.run.scale == 1) return;
     picture.notes.push_back("the time is too short for 2 samples in every pixel: rendered at 1/" +
                             std::to_string(view.run.scale) + " of the size and upsampled");

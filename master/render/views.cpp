@@ -241,7 +241,8 @@ bool Views::may_publish() const {
         const ViewState& view = entry.second;
         // Without a suitable node there is nothing to wait for.
         return view.awaiting_first_frame() &&
-               services_.dispatcher.prospects(view.request.view, {view.version, view.request.reproducible})
+               services_.dispatcher
+                       .prospects(view.request.view, {view.version, view.request.reproducible, view.run.kind})
                        .suitable > 0;
     });
 }
@@ -313,7 +314,11 @@ void Views::advance(TimePoint now) {
         // One view that fails takes no other with it.
         try {
             runner_.notify_waiting(view, now);
-            if (!view.in_group()) runner_.advance(view, now);
+            if (!view.in_group()) {
+                runner_.advance(view, now);
+            } else if (!view.passes.empty() && services_.dispatcher.is_superseded(view.pass().view.id)) {
+                group_.scene_changed(view.version, true);
+            }
         } catch (const std::exception& error) {
             runner_.fail(view, std::string("it could not be rendered: ") + error.what(), now);
         }
@@ -323,6 +328,7 @@ void Views::advance(TimePoint now) {
 void Views::deal(TimePoint now) {
     std::vector<NodeCapacity> capacities = services_.dispatcher.capacities();
     picks_.deal(capacities, now);
+    services_.dispatcher.deal_verifications(capacities, now);
     std::vector<ViewState*> order;
     for (auto& [id, view] : table_.all()) {
         const bool restarts = !view.in_group() && view.restart_wanted && !table_.passes_paused &&

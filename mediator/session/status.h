@@ -55,6 +55,7 @@ struct NodeStatus {
     double clock_offset_seconds = 0, clock_bound_seconds = 0;  // its clock minus the master's, +- bound
     std::string quarantine;                                    // why it gets no work; "" = it does
     double quarantine_seconds = 0;                             // until it does
+    std::string idle_reason;  // why it takes no part in what is rendered; "" = it may
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "summary", &NodeStatus::summary), row(2, "phase", &NodeStatus::phase),
                           row(3, "version", &NodeStatus::version),
@@ -65,7 +66,8 @@ struct NodeStatus {
                           row(8, "clock_offset_seconds", &NodeStatus::clock_offset_seconds),
                           row(9, "clock_bound_seconds", &NodeStatus::clock_bound_seconds),
                           row(10, "quarantine", &NodeStatus::quarantine),
-                          row(11, "quarantine_seconds", &NodeStatus::quarantine_seconds));
+                          row(11, "quarantine_seconds", &NodeStatus::quarantine_seconds),
+                          row(12, "idle_reason", &NodeStatus::idle_reason));
     }
 };
 
@@ -124,6 +126,7 @@ struct ClusterStatus {
     std::uint64_t caught_exceptions = 0;   // in the master's event loop: bugs, which it survived
     std::uint64_t refused_handshakes = 0;  // connections whose key is not on the allow-list
     LoopStatus loop;
+    std::uint64_t verified_units = 0;  // rendered again by another node, with the same bits
     static constexpr auto describe(auto row) {
         using Self = ClusterStatus;
         return std::tuple(
@@ -136,7 +139,8 @@ struct ClusterStatus {
             row(13, "resyncs", &Self::resyncs), row(14, "display", &Self::display),
             row(15, "contradictions", &Self::contradictions),
             row(16, "caught_exceptions", &Self::caught_exceptions),
-            row(17, "refused_handshakes", &Self::refused_handshakes), row(18, "loop", &Self::loop));
+            row(17, "refused_handshakes", &Self::refused_handshakes), row(18, "loop", &Self::loop),
+            row(19, "verified_units", &Self::verified_units));
     }
 };
 

@@ -81,7 +81,7 @@ struct ViewRequest {
     view::View view;   // id and revision are set by the master
     StopRule stop;
     Policy policy = Policy::Mixed;
-    bool reproducible = false;    // only nodes pinned to AVX2
+    bool reproducible = false;    // only nodes of one kind, pinned to AVX2
     std::uint32_t tile = 0;       // edge in pixels; 0 = chosen by the master
     std::uint32_t min_nodes = 0;  // start when this many are ready
     Duration wait_limit{0};       // give up after this time without nodes; 0 = never

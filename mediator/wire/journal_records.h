@@ -169,6 +169,7 @@ struct SavedView {
     std::uint64_t owner_key = 0, number = 0;
     session::ViewRequest request;
     Hash128 scene_hash_of_film;
+    std::string kind;  // of the nodes that rendered its blocks, if the view is reproducible
     std::vector<frame::FilmTile> blocks;
     std::uint64_t block_count = 0;  // when decoded: the number of blocks that follow in the file
     static constexpr auto describe(auto row) {
@@ -192,7 +193,7 @@ struct SavedView {
                              return std::max<std::uint64_t>(view.blocks.size(), view.block_count);
                          },
                          [](SavedView& view, std::uint64_t count) { view.block_count = count; }}),
-            row(9, "request", &SavedView::request));
+            row(9, "request", &SavedView::request), row(10, "kind", &SavedView::kind));
     }
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <limits>
 
 #include "mediator/frame/resolve.h"
@@ -143,6 +144,171 @@ TEST_F(FaultyNodes, ATileThatNoNodeCanRenderIsLeftOutAndNamed) {
     for (int i = 1; i <= 3; ++i)
         EXPECT_EQ(quarantine("node-" + std::to_string(i)), "") << "the samples are to blame, not the nodes";
     expect_balanced();
+}
+
+// Nodes of another kind have other bits: here all of them do.
+TEST_F(FaultyNodes, AReproducibleFrameIsRenderedByOneKindAlone) {
+    std::atomic<int> others = 0;
+    cluster.add_node(hooked(
+        [&](const auto&, backend::RenderResult& result) {
+            ++others;
+            for (frame::FilmTile& block : result.blocks) std::ranges::fill(block.planes, 0.5f);
+        },
+        5us, "other-1"));
+    for (int i = 0; i < 2; ++i) cluster.add_node(hooked([](const auto&, auto&) {}, 5us, "mine-1"));
+    session::ViewRequest request = small_request();
+    request.reproducible = true;
+    request.min_nodes = 2;
+    request.picture = session::PictureEncoding::Png;
+    const client::ViewResult result = render(request);
+    EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
+    EXPECT_EQ(to_hex(frame::film_hash(*result.film())), honest_hash());
+    EXPECT_EQ(others, 0);
+    const std::string left_out =
+        "node node-1 (kind other-1) takes no part: the frame is reproducible on kind mine-1";
+    EXPECT_TRUE(was_logged(left_out));
+    EXPECT_TRUE(std::ranges::find(result.summary.picture.notes, left_out) !=
+                result.summary.picture.notes.end());
+    request.min_nodes = 3;
+    request.wait_limit = 200ms;
+    const client::ViewResult waiting = render(request);
+    EXPECT_EQ(waiting.summary.outcome, session::Outcome::NoNodes) << "no kind has three nodes";
+    EXPECT_NE(waiting.summary.message.find("there are 2 kinds"), std::string::npos)
+        << waiting.summary.message;
+    expect_balanced();
+}
+
+void quick_to_be_stuck(master::MasterSettings& settings) {
+    settings.stuck = {.allowance = 500ms, .first_film = 60s};
+}
+
+// As a driver that compiles kernels for half a minute.
+TEST_F(FaultyNodes, ANodeThatCompilesBeforeItsFirstUnitIsNotStuck) {
+    LoopbackCluster patient(quick_to_be_stuck);
+    std::atomic<bool> is_first = true;
+    patient.add_node(hooked([&](const auto&, auto&) {
+        if (is_first.exchange(false)) std::this_thread::sleep_for(1500ms);
+    }));
+    const auto session = patient.batch(std::make_shared<scene::BlobStore>());
+    const client::ViewResult result = client::render(*session, small_request(), {}, {});
+    EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
+    EXPECT_EQ(result.summary.units.lost, 0u);
+    EXPECT_EQ(result.summary.units.reissued, 0u);
+    for (const std::string& event : patient.events())
+        EXPECT_EQ(event.find("is stuck"), std::string::npos) << event;
+}
+
+TEST_F(FaultyNodes, ANodeThatStopsInTheMiddleIsStuckAndOthersGetItsUnits) {
+    LoopbackCluster strict(quick_to_be_stuck);
+    std::atomic<int> units = 0;
+    std::atomic<bool> go_on = false;
+    strict.add_node(hooked([&](const auto&, auto&) {
+        if (++units < 5) return;
+        while (!go_on) std::this_thread::sleep_for(5ms);
+    }));
+    session::ViewRequest request = small_request();
+    const auto session = strict.batch(std::make_shared<scene::BlobStore>());
+    std::jthread late([&] {
+        const auto says_stuck = [&] {
+            return std::ranges::any_of(strict.events(), [](const std::string& event) {
+                return event.find("node node-1 is stuck") != std::string::npos;
+            });
+        };
+        for (int i = 0; i < 2000 && !says_stuck(); ++i) std::this_thread::sleep_for(5ms);
+        EXPECT_TRUE(says_stuck());
+        strict.add_node("null");
+    });
+    const client::ViewResult result = client::render(*session, request, {}, {});
+    go_on = true;
+    EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
+    EXPECT_GT(result.summary.units.lost, 0u);
+    EXPECT_EQ(to_hex(frame::film_hash(*result.film())), honest_hash());
+}
+
+void verify_all(master::MasterSettings& settings) {
+    settings.verified_share = 1.0;
+}
+
+session::ViewRequest larger_request(std::uint32_t nodes) {
+    session::ViewRequest request = FaultyNodes::small_request();
+    request.view.width = 256;
+    request.view.height = 192;
+    request.view.window = {0, 0, 256, 192};
+    request.min_nodes = nodes;
+    return request;
+}
+
+TEST_F(FaultyNodes, VerifiedFilmIsThatOfHonestNodesAndIsMergedOnce) {
+    std::string hashes[2];
+    for (const bool verified : {false, true}) {
+        LoopbackCluster pair(verified ? verify_all : [](master::MasterSettings&) {});
+        for (int i = 0; i < 2; ++i) pair.add_node("null", {}, 2us);
+        const auto session = pair.batch(std::make_shared<scene::BlobStore>());
+        const client::ViewResult result = client::render(*session, larger_request(2), {}, {});
+        EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
+        hashes[verified] = to_hex(frame::film_hash(*result.film()));
+        EXPECT_EQ(result.summary.samples, 256u * 192u * 16u);
+        status = session->status();
+        EXPECT_EQ(status.verified_units > 0, verified) << status.verified_units;
+        EXPECT_EQ(status.contradictions, 0u);
+        expect_balanced();
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+TEST_F(FaultyNodes, ANodeThatLiesIsFoundByTheOthersAndQuarantined) {
+    LoopbackCluster trio(verify_all);
+    trio.add_node(hooked(
+        [](const auto&, backend::RenderResult& result) {
+            for (frame::FilmTile& block : result.blocks) {
+                std::uint32_t bits = std::bit_cast<std::uint32_t>(block.planes[0]);
+                block.planes[0] = std::bit_cast<float>(bits ^ 1u);
+            }
+        },
+        2us));
+    for (int i = 0; i < 2; ++i) trio.add_node(hooked([](const auto&, auto&) {}, 2us));
+    const auto session = trio.batch(std::make_shared<scene::BlobStore>());
+    const client::ViewResult result = client::render(*session, larger_request(3), {}, {});
+    EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
+    status = session->status();
+    EXPECT_GT(status.contradictions, 0u);
+    EXPECT_NE(quarantine("node-1").find("differs from that of two other nodes (unit "), std::string::npos)
+        << quarantine("node-1");
+    EXPECT_EQ(quarantine("node-2"), "");
+    EXPECT_EQ(quarantine("node-3"), "");
+    const std::vector<std::string> events = trio.events();
+    EXPECT_TRUE(std::ranges::any_of(events, [](const std::string& event) {
+        return event.find("node-1") != std::string::npos &&
+               event.find("gave different bits for unit") != std::string::npos &&
+               event.find("samples 0..") != std::string::npos;
+    }));
+    expect_balanced();
+}
+
+// Its test patterns do not get into pictures, whichever node comes first.
+TEST_F(FaultyNodes, ANullNodeRendersNothingWhileOthersAreConnected) {
+    std::atomic<int> patterns = 0;
+    cluster.add_node(hooked([&](const auto&, auto&) { ++patterns; }, 100us));
+    std::jthread late([&] {
+        while (patterns == 0) std::this_thread::sleep_for(1ms);
+        cluster.add_node(hooked(
+            [](const auto&, backend::RenderResult& result) {
+                for (frame::FilmTile& block : result.blocks) std::ranges::fill(block.planes, 0.5f);
+            },
+            {}, "real-1"));
+    });
+    session::ViewRequest request = small_request();
+    request.picture = session::PictureEncoding::Png;
+    const client::ViewResult result = render(request);
+    late.join();
+    EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
+    EXPECT_TRUE(std::ranges::all_of(result.film()->plane(0), [](float value) { return value == 0.5f; }));
+    ASSERT_EQ(result.summary.nodes.size(), 1u);
+    EXPECT_EQ(result.summary.nodes[0].name, "node-2");
+    EXPECT_TRUE(was_logged("node node-1 (kind null-1/r1) takes no part: the null back-end"));
+    ASSERT_FALSE(result.summary.picture.notes.empty());
+    EXPECT_NE(result.summary.picture.notes[0].find("node node-1"), std::string::npos);
+    EXPECT_NE(status.nodes.at(0).idle_reason, "");
 }
 
 }  // namespace

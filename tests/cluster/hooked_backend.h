@@ -12,10 +12,15 @@ class HookedBackend final : public backend::Backend {
   public:
     using Hook = std::function<void(const view::WorkUnit& unit, backend::RenderResult& result)>;
 
-    HookedBackend(std::unique_ptr<Backend> inner, Hook hook)
-        : inner_(std::move(inner)), hook_(std::move(hook)) {}
+    // `kind` "" = that of the null back-end.
+    HookedBackend(std::unique_ptr<Backend> inner, Hook hook, std::string kind)
+        : inner_(std::move(inner)), hook_(std::move(hook)), kind_(std::move(kind)) {}
 
-    backend::Capabilities capabilities() const override { return inner_->capabilities(); }
+    backend::Capabilities capabilities() const override {
+        backend::Capabilities capabilities = inner_->capabilities();
+        if (!kind_.empty()) capabilities.kind = kind_;
+        return capabilities;
+    }
     Version version() const override { return inner_->version(); }
     std::unique_ptr<backend::EditScope> begin_edit() override { return inner_->begin_edit(); }
     backend::RenderResult render(const view::View& view, const view::WorkUnit& unit,
@@ -32,13 +37,15 @@ class HookedBackend final : public backend::Backend {
   private:
     std::unique_ptr<Backend> inner_;
     Hook hook_;
+    std::string kind_;
 };
 
-inline LoopbackCluster::MakeBackend hooked(HookedBackend::Hook hook, Duration cost = {}) {
-    return [hook = std::move(hook), cost](const backend::BackendSettings& settings) {
+inline LoopbackCluster::MakeBackend hooked(HookedBackend::Hook hook, Duration cost = {},
+                                           const std::string& kind = {}) {
+    return [hook = std::move(hook), cost, kind](const backend::BackendSettings& settings) {
         backend::BackendSettings own = settings;
         own.simulated_sample_cost = cost;
-        return std::make_unique<HookedBackend>(backend::find_backend("null").make(own), hook);
+        return std::make_unique<HookedBackend>(backend::find_backend("null").make(own), hook, kind);
     };
 }
 

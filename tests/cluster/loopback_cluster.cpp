@@ -14,11 +14,13 @@ net::LivenessSettings quick_heartbeats() {
 
 }  // namespace
 
-LoopbackCluster::LoopbackCluster() : hub_(net::LoopbackHub::Limits{.messages_per_queue = 4096}) {
+LoopbackCluster::LoopbackCluster(const std::function<void(master::MasterSettings&)>& adjust)
+    : hub_(net::LoopbackHub::Limits{.messages_per_queue = 4096}) {
     master::MasterSettings settings{.software = "test"};
     settings.liveness = quick_heartbeats();
     settings.collect_interval = std::chrono::milliseconds(50);
     settings.views.overdue_patience = std::chrono::seconds(1);
+    if (adjust) adjust(settings);
     master_ = std::make_unique<master::RenderMaster>(hub_.server(), std::make_shared<scene::BlobStore>(),
                                                      clock_, settings, [this](const master::Event& event) {
                                                          const std::scoped_lock lock(mutex_);
@@ -49,6 +51,7 @@ void LoopbackCluster::start_node(const std::string& kind, std::unique_ptr<backen
     node::NodeSettings settings{
         .name = "node-" + std::to_string(nodes_.size() + 1), .backend = kind, .workers = 1};
     settings.liveness = quick_heartbeats();
+    settings.reproducible = kind != "embree";  // needs no pinning
     nodes_.push_back(std::make_unique<node::RenderNode>(
         net::with_faults(hub_.client(net::Role::Node), faults.control, faults.bulk), std::move(made), blobs,
         clock_, settings, node::NodeCallbacks{.event = [](const node::Report&) {}, .reconnect = {}}));

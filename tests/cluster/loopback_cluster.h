@@ -25,7 +25,8 @@ class LoopbackCluster {
         net::FaultPlan control, bulk;
     };
 
-    LoopbackCluster();
+    // `adjust` changes the settings of the master, which are for quick tests.
+    explicit LoopbackCluster(const std::function<void(master::MasterSettings&)>& adjust = {});
     ~LoopbackCluster();
 
     // `cost`: simulated time per sample of the null back-end.

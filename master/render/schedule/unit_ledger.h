@@ -46,6 +46,9 @@ struct Admission {
     std::uint32_t tile = 0;
     // Samples of this tile that arrived earlier as parts of the same units; the film may replace blocks of these alone.
     BlockSet replaceable;
+    // Whether it is merged, and its bits are hashed to verify them or because they verify others'.
+    enum class Use : std::uint8_t { Merge, MergeAndHash, Compare };
+    Use use = Use::Merge;
 };
 
 // The units of a pass from the moment they are dealt: which nodes hold them, which samples of each tile have arrived, and

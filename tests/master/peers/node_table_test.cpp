@@ -45,6 +45,24 @@ TEST_F(NodeTableTest, DistinguishesStuckFromIdle) {
     EXPECT_FALSE(node.stuck);
 }
 
+TEST_F(NodeTableTest, ALongUnitAndABuildMayTakeLonger) {
+    node.allowance = 60s;
+    table.heartbeat(node, {.phase = session::NodePhase::Rendering}, TimePoint{1s});
+    table.heartbeat(node, {.phase = session::NodePhase::Rendering}, TimePoint{60s});
+    EXPECT_FALSE(node.stuck) << "its units are expected to take so long";
+    table.heartbeat(node, {.phase = session::NodePhase::Rendering}, TimePoint{62s});
+    EXPECT_TRUE(node.stuck);
+    table.heartbeat(node, {.phase = session::NodePhase::Building}, TimePoint{63s});
+    table.heartbeat(node, {.phase = session::NodePhase::Building}, TimePoint{63s + 29min});
+    EXPECT_FALSE(node.stuck) << "it builds";
+    node.allowance = 0s;
+    table.heartbeat(node, {.phase = session::NodePhase::Rendering}, TimePoint{64s + 29min});
+    EXPECT_FALSE(node.stuck) << "it has just begun to render";
+    table.heartbeat(node, {.phase = session::NodePhase::Building}, TimePoint{65s + 29min});
+    table.heartbeat(node, {.phase = session::NodePhase::Building}, TimePoint{66s + 59min});
+    EXPECT_TRUE(node.stuck);
+}
+
 TEST_F(NodeTableTest, EchoedHeartbeatGivesRoundTripAndClockOffset) {
     table.heartbeat(node, {.sent_at = 5}, TimePoint{1s});
     EXPECT_FALSE(node.clock.offset(TimePoint{1s}));

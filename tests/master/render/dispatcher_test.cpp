@@ -265,5 +265,109 @@ TEST_F(DispatcherTest, ReproducibleWorkGoesToPinnedNodesOnly) {
     EXPECT_EQ(nodes.find(NodeId{2})->pending.size(), 1u);
 }
 
+TEST_F(DispatcherTest, AReproducibleFrameHasNodesOfOneKind) {
+    const auto add = [&](std::uint64_t number, const std::string& kind) {
+        NodeRecord& node = add_node(number, 1);
+        node.hello.reproducible = true;
+        node.hello.kind = kind;
+    };
+    add(1, "x");
+    add(2, "y");
+    add(3, "y");
+    const view::View asked = view(8, 64);
+    const NodeRequirements any{Scene, true};
+    dispatcher.begin(asked, {.window = asked.window, .tile = 8, .spp = 4}, any);
+    EXPECT_EQ(dispatcher.leading_kind(asked, Scene), "y") << "it has more workers";
+    EXPECT_EQ(dispatcher.prospects(asked, any).ready, 2u) << "as many as may work together";
+    deal(ViewId{8});
+    EXPECT_EQ(dispatcher.kind(ViewId{8}), "y");
+    EXPECT_TRUE(nodes.find(NodeId{1})->pending.empty());
+    EXPECT_EQ(nodes.find(NodeId{2})->pending.size(), 1u);
+    EXPECT_EQ(nodes.find(NodeId{3})->pending.size(), 1u);
+    const std::string left_out = "node node-1 (kind x) takes no part: the frame is reproducible on kind y";
+    EXPECT_EQ(dispatcher.left_out(ViewId{8}), std::vector{left_out});
+    for (int i = 0; i < 3; ++i) dispatcher.collect_overdue(now);
+    EXPECT_EQ(events, std::vector{left_out}) << "once";
+    EXPECT_EQ(dispatcher.idle_reason(*nodes.find(NodeId{1})), "the frame is reproducible on kind y");
+    EXPECT_EQ(dispatcher.idle_reason(*nodes.find(NodeId{2})), "");
+    // The kind vanishes: the frame waits for it.
+    for (const std::uint64_t gone : {2u, 3u}) {
+        dispatcher.node_gone(NodeId{gone}, Dispatcher::Departure::Expected, now);
+        nodes.remove(NodeId{gone});
+    }
+    deal(ViewId{8});
+    EXPECT_TRUE(nodes.find(NodeId{1})->pending.empty());
+    const NodeRequirements chosen{Scene, true, "y"};
+    EXPECT_EQ(dispatcher.prospects(asked, chosen).suitable, 0u);
+    EXPECT_NE(dispatcher.obstacles(asked, chosen).find("reproducible on kind y"), std::string::npos);
+    add(4, "y");
+    deal(ViewId{8});
+    EXPECT_EQ(nodes.find(NodeId{4})->pending.size(), 1u);
+}
+
+TEST_F(DispatcherTest, NullNodesRenderOnlyAmongThemselves) {
+    const auto add = [&](std::uint64_t number, const std::string& kind) {
+        wire::Hello hello{.name = "node-" + std::to_string(number), .channels = {frame::Channel::Color}};
+        hello.kind = kind;
+        NodeRecord& node = nodes.add(NodeId{number}, number, number, "node", std::move(hello), now);
+        node.bulk = 100 + number;
+        node.reported = node.state.version = Scene;
+        node.state.free_slots = 1;
+    };
+    add(1, "null-1/r1");
+    const view::View asked = view(8, 64);
+    begin(asked);
+    deal(ViewId{8});
+    ASSERT_EQ(nodes.find(NodeId{1})->pending.size(), 1u) << "there are no others";
+    const view::WorkUnit unit = channel.all<wire::Work>().at(0).unit;
+    dispatcher.take(report(unit, FrameAssembler::Outcome::Merged, 1), now);
+    EXPECT_FALSE(dispatcher.is_superseded(ViewId{8}));
+    add(2, "embree-3/r1");
+    EXPECT_TRUE(dispatcher.is_superseded(ViewId{8})) << "its film has test patterns";
+    EXPECT_EQ(dispatcher.prospects(asked, {Scene}).ready, 1u);
+    for (int i = 0; i < 3; ++i) dispatcher.collect_overdue(now);
+    ASSERT_EQ(events.size(), 1u) << "once";
+    EXPECT_NE(events[0].find("node node-1 (kind null-1/r1) takes no part: the null back-end"),
+              std::string::npos);
+    EXPECT_NE(dispatcher.idle_reason(*nodes.find(NodeId{1})), "");
+    begin(asked);
+    nodes.find(NodeId{1})->pending.clear();
+    deal(ViewId{8});
+    EXPECT_TRUE(nodes.find(NodeId{1})->pending.empty());
+    ASSERT_EQ(nodes.find(NodeId{2})->pending.size(), 1u);
+    dispatcher.take(report(channel.all<wire::Work>().back().unit, FrameAssembler::Outcome::Merged, 2), now);
+    // A picture that others began waits for others.
+    dispatcher.node_gone(NodeId{2}, Dispatcher::Departure::Expected, now);
+    nodes.remove(NodeId{2});
+    deal(ViewId{8});
+    EXPECT_TRUE(nodes.find(NodeId{1})->pending.empty());
+    EXPECT_NE(dispatcher.obstacles(asked, {Scene}).find("1 null nodes idle"), std::string::npos);
+    EXPECT_EQ(dispatcher.prospects(view(16, 64), {Scene}).ready, 1u) << "another may be of test patterns";
+}
+
+TEST_F(DispatcherTest, ANodeMayCompileBeforeItsFirstFilmAndALongUnitMayTakeLong) {
+    NodeRecord& node = add_node(1, 1);
+    begin(view(8, 16));
+    dispatcher.collect_overdue(now);
+    EXPECT_EQ(node.allowance, Duration::zero()) << "it has no units";
+    deal(ViewId{8});
+    dispatcher.collect_overdue(now);
+    EXPECT_EQ(node.allowance, StuckSettings{}.first_film);
+    const view::WorkUnit unit = channel.all<wire::Work>().at(0).unit;
+    MergeReport slow = report(unit, FrameAssembler::Outcome::Merged, 1);
+    slow.pixel_samples = 1;
+    slow.busy = std::chrono::seconds(60);
+    dispatcher.take(slow, now);
+    node.pending.clear();
+    deal(ViewId{8});
+    ASSERT_FALSE(dispatcher.find(ViewId{8})->held_by(NodeId{1}).empty());
+    dispatcher.collect_overdue(now);
+    EXPECT_GE(node.allowance, std::chrono::minutes(10)) << "ten times what a sample takes";
+    node.stuck = true;
+    for (int i = 0; i < 2; ++i) dispatcher.collect_overdue(now + std::chrono::minutes(11));
+    ASSERT_EQ(events.size(), 1u);
+    EXPECT_EQ(events[0].find("node node-1 is stuck: it has finished nothing for 66"), 0u) << events[0];
+}
+
 }  // namespace
 }  // namespace tessera::master
