@@ -1,11 +1,14 @@
 #include "client/import/image_decoder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <string>
 
 #include "client/import/limits.h"
+#include "mediator/picture/color.h"
+#include "mediator/picture/hdr_reader.h"
 
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
@@ -14,7 +17,7 @@
 #define STBI_ONLY_JPEG
 #define STBI_ONLY_BMP
 #define STBI_ONLY_TGA
-#define STBI_ONLY_HDR
+#define STBI_NO_LINEAR
 #define STBI_MAX_DIMENSIONS 16384
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -52,7 +55,7 @@ Expected<Size> checked_size(std::span<const unsigned char> bytes) {
                                &components) ||
         size.width <= 0 || size.height <= 0) {
         return failure(ErrorCode::InvalidInput,
-                       "the image is damaged or neither PNG, JPEG, BMP, TGA nor HDR");
+                       "the image is damaged or neither PNG, JPEG, BMP, TGA nor Radiance");
     }
     const std::string claim =
         "the image claims " + std::to_string(size.width) + " x " + std::to_string(size.height) + " pixels, ";
@@ -74,9 +77,27 @@ tl::unexpected<Error> damaged() {
                    "the image is damaged (" + std::string(stbi_failure_reason()) + ")");
 }
 
+// Not by stb_image 2.27, which never returns from a truncated run.
+Expected<DecodedImage> radiance_image(std::span<const std::byte> bytes) try {
+    const frame::Image linear = picture::decode_hdr(bytes, ImageLimits);
+    DecodedImage image{linear.width, linear.height, {}};
+    image.rgba.reserve(linear.pixel_count() * 4);
+    for (std::size_t i = 0; i < linear.pixel_count(); ++i) {
+        for (const float value : linear.pixel(i)) {
+            const double level = picture::srgb_from_linear(std::min(double{value}, 1.0));
+            image.rgba.push_back(static_cast<std::uint8_t>(std::lround(level * 255.0)));
+        }
+        image.rgba.push_back(255);
+    }
+    return image;
+} catch (const Error& error) {
+    return tl::unexpected<Error>(error);
+}
+
 }  // namespace
 
 Expected<DecodedImage> decode_image(std::span<const unsigned char> bytes) {
+    if (picture::is_hdr(std::as_bytes(bytes))) return radiance_image(std::as_bytes(bytes));
     const Expected<Size> size = checked_size(bytes);
     if (!size) return tl::unexpected<Error>(size.error());
     int width = 0, height = 0, components = 0;
@@ -86,22 +107,6 @@ Expected<DecodedImage> decode_image(std::span<const unsigned char> bytes) {
     if (!decoded) return damaged();
     DecodedImage image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
     image.rgba.assign(decoded.get(), decoded.get() + std::size_t{image.width} * image.height * 4);
-    return image;
-}
-
-Expected<frame::Image> decode_hdr(std::span<const unsigned char> bytes) {
-    const Expected<Size> size = checked_size(bytes);
-    if (!size) return tl::unexpected<Error>(size.error());
-    const int byte_size = static_cast<int>(bytes.size());
-    if (!stbi_is_hdr_from_memory(bytes.data(), byte_size)) {
-        return failure(ErrorCode::InvalidInput, "the image is not a Radiance HDR image");
-    }
-    int width = 0, height = 0, components = 0;
-    const std::unique_ptr<float, decltype(&stbi_image_free)> decoded(
-        stbi_loadf_from_memory(bytes.data(), byte_size, &width, &height, &components, 3), &stbi_image_free);
-    if (!decoded) return damaged();
-    frame::Image image(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), 3);
-    std::copy_n(decoded.get(), image.values.size(), image.values.begin());
     return image;
 }
 

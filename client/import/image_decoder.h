@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "mediator/base/error.h"
-#include "mediator/frame/image.h"
 
 namespace tessera::import {
 
@@ -15,11 +14,8 @@ struct DecodedImage {
     std::vector<std::uint8_t> rgba;  // rows from the top
 };
 
-// PNG, JPEG, BMP or TGA. Before anything is allocated, the size in the header is checked against the limits
+// PNG, JPEG, BMP, TGA or Radiance (converted to sRGB, 1 is the brightest). Before anything is allocated, the size in the header is checked against the limits
 // and against the number of bytes available. InvalidInput says what is wrong.
 Expected<DecodedImage> decode_image(std::span<const unsigned char> bytes);
-
-// A Radiance image (.hdr): three linear components. Checked in the same way.
-Expected<frame::Image> decode_hdr(std::span<const unsigned char> bytes);
 
 }  // namespace tessera::import

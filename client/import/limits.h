@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "mediator/picture/picture_limits.h"
+
 // Limits for scene files: generous for real scenes, small enough to reject malformed files before they
 // exhaust memory.
 namespace tessera::import {
@@ -15,6 +17,7 @@ inline constexpr std::uint64_t MaxDecodedBytes = 8ull << 30;      // of all arra
 inline constexpr std::uint64_t MaxInstances = 4'000'000;          // of geometries
 inline constexpr std::uint32_t MaxImageEdge = 16384;              // pixels
 inline constexpr std::uint64_t MaxImagePixels = 1ull << 27;
+inline constexpr picture::PictureLimits ImageLimits{.side = MaxImageEdge, .pixels = MaxImagePixels};
 inline constexpr std::size_t MaxNesting = 512;      // of nodes
 inline constexpr std::size_t MaxTextNesting = 200;  // of JSON arrays and objects
 
