@@ -6,14 +6,15 @@
 #include <memory>
 #include <string>
 
+#include "client/import/jpeg_check.h"
 #include "client/import/limits.h"
 #include "mediator/picture/color.h"
 #include "mediator/picture/hdr_reader.h"
+#include "mediator/picture/png_reader.h"
 
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_NO_STDIO
-#define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
 #define STBI_ONLY_BMP
 #define STBI_ONLY_TGA
@@ -29,13 +30,11 @@
 namespace tessera::import {
 namespace {
 
-// Upper bound of pixels per byte of the file. Deflate repeats at most 1032 bytes per byte of
-// input, and a PNG pixel takes at least an eighth of a byte; a progressive JPEG spends at least one bit on 16
-// x 16 pixels. The others store runs of at most 128 pixels in two bytes.
-std::uint64_t pixels_per_byte(std::span<const unsigned char> bytes) {
-    const bool png = bytes.size() > 1 && bytes[0] == 0x89 && bytes[1] == 'P';
-    const bool jpeg = bytes.size() > 1 && bytes[0] == 0xff && bytes[1] == 0xd8;
-    return png ? 1032 * 8 : jpeg ? 256 * 8 : 128;
+// Upper bound of pixels per byte of the file: a BMP has a bit per pixel, a TGA runs of 128 pixels in two bytes.
+constexpr std::uint64_t PixelsPerByte = 64;
+
+bool is_jpeg(std::span<const unsigned char> bytes) {
+    return bytes.size() > 1 && bytes[0] == 0xff && bytes[1] == 0xd8;
 }
 
 struct Size {
@@ -65,9 +64,11 @@ Expected<Size> checked_size(std::span<const unsigned char> bytes) {
                                                     " by " + std::to_string(MaxImagePixels / MaxImageEdge) +
                                                     " that are read");
     }
-    if (size.pixels() / pixels_per_byte(bytes) > bytes.size()) {
+    if (is_jpeg(bytes)) {
+        if (const auto checked = check_jpeg(bytes); !checked) return tl::unexpected<Error>(checked.error());
+    } else if (size.pixels() / PixelsPerByte > bytes.size()) {
         return failure(ErrorCode::InvalidInput,
-                       claim + "but has only " + std::to_string(bytes.size()) + " bytes");
+                       claim + "but has only " + std::to_string(bytes.size()) + " bytes: save it again");
     }
     return size;
 }
@@ -98,6 +99,9 @@ Expected<DecodedImage> radiance_image(std::span<const std::byte> bytes) try {
 
 Expected<DecodedImage> decode_image(std::span<const unsigned char> bytes) {
     if (picture::is_hdr(std::as_bytes(bytes))) return radiance_image(std::as_bytes(bytes));
+    // Not by stb_image, which decompresses all that the bytes expand to, whatever the header says.
+    if (picture::is_png(std::as_bytes(bytes)))
+        return picture::read_png_rgba(std::as_bytes(bytes), ImageLimits);
     const Expected<Size> size = checked_size(bytes);
     if (!size) return tl::unexpected<Error>(size.error());
     int width = 0, height = 0, components = 0;

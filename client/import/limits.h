@@ -17,6 +17,8 @@ inline constexpr std::uint64_t MaxDecodedBytes = 8ull << 30;      // of all arra
 inline constexpr std::uint64_t MaxInstances = 4'000'000;          // of geometries
 inline constexpr std::uint32_t MaxImageEdge = 16384;              // pixels
 inline constexpr std::uint64_t MaxImagePixels = 1ull << 27;
+inline constexpr std::uint64_t MaxJpegScans = 500;
+inline constexpr std::uint64_t MaxJpegScanPixels = 1ull << 31;  // pixels of all scans together, about 20 s
 inline constexpr picture::PictureLimits ImageLimits{.side = MaxImageEdge, .pixels = MaxImagePixels};
 inline constexpr std::size_t MaxNesting = 512;      // of nodes
 inline constexpr std::size_t MaxTextNesting = 200;  // of JSON arrays and objects
