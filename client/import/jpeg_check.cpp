@@ -74,7 +74,8 @@ JpegFrame read_frame(std::span<const unsigned char> bytes) {
             if (bytes.size() - at < 2) break;
             const std::size_t length = bytes[at] * 256u + bytes[at + 1];
             if (length < 2 || length > bytes.size() - at) break;
-            if (starts_frame(marker)) read_frame(bytes.subspan(at + 2, length - 2), marker, frame);
+            if (starts_frame(marker) && frame.width == 0)  // stb_image uses the first one
+                read_frame(bytes.subspan(at + 2, length - 2), marker, frame);
             if (marker == StartOfScan) {
                 ++frame.scans;
                 within = Within::Scan;

@@ -198,6 +198,9 @@ TEST(ImageLimits, AJpegCannotClaimMoreThanItsBytesHold) {
     EXPECT_THAT(refusal_of(jpeg(16384, 8192, 17, 300'000)), testing::HasSubstr("17 scans"));
     EXPECT_THAT(refusal_of(jpeg(8, 8, 501, 0)), testing::HasSubstr("501 scans"));
     EXPECT_EQ(refusal_of(jpeg(8, 8, 500, 0)), "");
+    const std::string large = jpeg(16384, 8192, 0, 0), small = jpeg(8, 8, 1, 0);
+    EXPECT_THAT(refusal_of(large.substr(0, large.size() - 2) + small.substr(2)),
+                testing::HasSubstr("has only"));
 }
 
 }  // namespace
