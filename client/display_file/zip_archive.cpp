@@ -68,25 +68,30 @@ Expected<std::vector<std::byte>> ZipArchive::read(const std::string& entry) cons
     if (index < 0)
         return failure(ErrorCode::NotFound,
                        name_ + ": '" + entry + "' is not in the archive: export it again");
-    const auto refuse = [&] {
+    const auto refuse = [&](const std::string& why) {
         return failure(ErrorCode::InvalidInput,
-                       name_ + ": '" + entry + "' cannot be unpacked: " + zip_strerror(archive_.get()));
+                       name_ + ": '" + entry + "' cannot be unpacked (" + why + "): export it again");
     };
     zip_stat_t stat;
-    if (zip_stat_index(archive_.get(), static_cast<zip_uint64_t>(index), 0, &stat) != 0) return refuse();
+    if (zip_stat_index(archive_.get(), static_cast<zip_uint64_t>(index), 0, &stat) != 0)
+        return refuse(zip_strerror(archive_.get()));
     const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(
         zip_fopen_index(archive_.get(), static_cast<zip_uint64_t>(index), 0), zip_fclose);
-    if (!file) return refuse();
-    // In pieces: the stated size is untrusted, memory grows with the actual data.
+    if (!file) return refuse(zip_strerror(archive_.get()));
+    // In pieces: the stated size is untrusted, memory grows with the actual data. Up to the end of the entry, since
+    // only there libzip compares the checksum.
     constexpr std::size_t Piece = std::size_t{1} << 20;
     std::vector<std::byte> bytes;
-    while (bytes.size() < stat.size) {
+    for (;;) {
         const std::size_t before = bytes.size();
-        bytes.resize(before + std::min<std::size_t>(Piece, stat.size - before));
+        bytes.resize(before + std::min<std::size_t>(Piece, stat.size - before) + 1);
         const zip_int64_t got = zip_fread(file.get(), bytes.data() + before, bytes.size() - before);
-        if (got <= 0) return refuse();
+        if (got < 0) return refuse(zip_file_strerror(file.get()));
         bytes.resize(before + static_cast<std::size_t>(got));
+        if (bytes.size() > stat.size) return refuse("it is longer than the archive states");
+        if (got == 0) break;
     }
+    if (bytes.size() < stat.size) return refuse("it is shorter than the archive states");
     return bytes;
 }
 

@@ -7,10 +7,13 @@
 #include <array>
 #include <assimp/Importer.hpp>
 #include <map>
+#include <new>
 
 #include "client/import/assimp_files.h"
 #include "client/import/assimp_materials.h"
+#include "client/import/limited_process.h"
 #include "client/import/limits.h"
+#include "client/import/scene_transfer.h"
 
 namespace tessera::import {
 namespace {
@@ -121,7 +124,21 @@ bool is_assimp_extension(std::string_view extension) {
     return std::find(Known.begin(), Known.end(), extension) != Known.end();
 }
 
-void import_with_assimp(const std::filesystem::path& file, SceneBuilder& builder) {
+namespace {
+
+// A file of 129 MiB takes 22 s and 1.3 GB. The other gigabytes and seconds are for its textures, which are limited by
+// MaxDecodedBytes.
+ProcessLimits limits_of_reader(const std::filesystem::path& file) {
+    std::error_code ignored;
+    const std::uintmax_t size =
+        std::min<std::uintmax_t>(std::filesystem::file_size(file, ignored), MaxFileBytes);
+    const auto mebibytes = static_cast<std::int64_t>(size >> 20);
+    return {.memory = (4ull << 30) + MaxDecodedBytes + 64 * size,
+            .processor_time = std::chrono::seconds(120 + 2 * mebibytes),
+            .wall_time = std::chrono::seconds(480 + 8 * mebibytes)};
+}
+
+void read_with_assimp(const std::filesystem::path& file, SceneBuilder& builder) {
     Assimp::Importer importer;
     importer.SetIOHandler(new AssimpFiles(file));  // owned by the importer
     importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 45.0f);
@@ -130,12 +147,26 @@ void import_with_assimp(const std::filesystem::path& file, SceneBuilder& builder
         file.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType |
                            aiProcess_GenSmoothNormals | aiProcess_FlipUVs);
     if (!scene || !scene->mRootNode) {
-        std::string cause = importer.GetErrorString();
+        const std::string cause = importer.GetErrorString();
+        if (cause.find("bad_alloc") != cause.npos) throw std::bad_alloc();
         throw Error(ErrorCode::InvalidInput,
                     "it cannot be read (" + cause.substr(0, 300) + "): export it again");
     }
     const LocalFolder folder(file);
     AssimpScene(*scene, folder, builder).build();
+}
+
+}  // namespace
+
+void import_with_assimp(const std::filesystem::path& file, SceneBuilder& builder) {
+    run_limited(
+        limits_of_reader(file),
+        [&](const ByteSink& sink) {
+            SceneBuilder there(builder.options());
+            read_with_assimp(file, there);
+            send_scene(there.result(), sink);
+        },
+        [&](const ByteSource& source) { receive_scene(source, builder); });
 }
 
 }  // namespace tessera::import

@@ -9,49 +9,42 @@
 #include <cctype>
 #include <cmath>
 
-#include "client/import/image_decoder.h"
 #include "client/import/limits.h"
 #include "client/import/local_files.h"
 #include "mediator/frame/image.h"
+#include "mediator/picture/exr_header.h"
+#include "mediator/picture/hdr_reader.h"
 
 namespace tessera::import {
 namespace {
 
 frame::Image read_exr(const std::filesystem::path& file) {
+    const Rect window = picture::checked_exr_window(file.string(), ImageLimits);
     Imf::InputFile input(file.c_str(), 0);
-    const Imath::Box2i window = input.header().dataWindow();
-    const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
-    const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-    if (width < 1 || height < 1 || width > MaxImageEdge || height > MaxImageEdge ||
-        static_cast<std::uint64_t>(width * height) > MaxImagePixels) {
-        throw Error(ErrorCode::InvalidInput, "it claims " + std::to_string(width) + " x " +
-                                                 std::to_string(height) + " pixels: scale it down");
-    }
     constexpr const char* Channels[] = {"R", "G", "B"};
-    frame::Image image(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), 3);
+    frame::Image image(static_cast<std::uint32_t>(window.width), static_cast<std::uint32_t>(window.height),
+                       3);
     // OpenEXR addresses pixels by data window coordinates, which need not start at 0.
     constexpr std::ptrdiff_t Pixel = 3 * sizeof(float);
-    char* origin =
-        reinterpret_cast<char*>(image.values.data()) - (window.min.x + window.min.y * width) * Pixel;
+    const std::ptrdiff_t row = Pixel * window.width;
+    char* origin = reinterpret_cast<char*>(image.values.data()) - window.x * Pixel - window.y * row;
     Imf::FrameBuffer target;
     for (std::size_t k = 0; k < 3; ++k) {
         if (!input.header().channels().findChannel(Channels[k])) {
             throw Error(ErrorCode::InvalidInput, "it has no channels R, G and B: convert it");
         }
         target.insert(Channels[k], Imf::Slice(Imf::FLOAT, origin + k * sizeof(float), Pixel,
-                                              static_cast<std::size_t>(Pixel * width)));
+                                              static_cast<std::size_t>(row)));
     }
     input.setFrameBuffer(target);
-    input.readPixels(window.min.y, window.max.y);
+    input.readPixels(window.y, window.bottom() - 1);
     return image;
 }
 
 frame::Image read_hdr(const std::filesystem::path& file) {
     const auto bytes = read_whole_file(file);
     if (!bytes) throw bytes.error();
-    auto image = decode_hdr(*bytes);
-    if (!image) throw image.error();
-    return std::move(*image);
+    return picture::decode_hdr(std::as_bytes(std::span(*bytes)), ImageLimits);
 }
 
 frame::Image read(const std::filesystem::path& file) {

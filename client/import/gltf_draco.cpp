@@ -1,9 +1,8 @@
 #include "client/import/gltf_draco.h"
 
-#include <draco/compression/decode.h>
 #include <draco/mesh/mesh.h>
 
-#include "client/import/limits.h"
+#include "client/import/draco_decoder.h"
 #include "mediator/base/error.h"
 
 namespace tessera::import {
@@ -56,16 +55,9 @@ std::vector<JointSet> joint_sets(const draco::Mesh& mesh, const std::map<std::st
 
 }  // namespace
 
-DracoMesh decode_draco(std::span<const unsigned char> bytes,
-                       const std::map<std::string, int>& attribute_ids) {
-    draco::DecoderBuffer buffer;
-    buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    draco::Decoder decoder;
-    auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-    if (!decoded.ok()) reject_draco("cannot be decoded (" + decoded.status().error_msg_string() + ")");
-    const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
-    if (mesh->num_points() > MaxElements || mesh->num_faces() > MaxElements / 3)
-        reject_draco("claims too many elements");
+DracoMesh decode_draco(std::span<const unsigned char> bytes, const std::map<std::string, int>& attribute_ids,
+                       std::uint64_t most_faces) {
+    const std::unique_ptr<draco::Mesh> mesh = decode_draco_mesh(bytes, most_faces);
 
     DracoMesh decoded_mesh;
     MeshData& result = decoded_mesh.mesh;

@@ -114,8 +114,11 @@ GltfMeshes::Source GltfMeshes::read(const tinygltf::Primitive& primitive, const 
     }
     MeshData& mesh = source.mesh;
     if (const auto draco = primitive.extensions.find(Draco); draco != primitive.extensions.end()) {
+        const auto indices = attributes.find(IndicesAttribute);
+        const bool counted = primitive.mode == TINYGLTF_MODE_TRIANGLES && indices != attributes.end();
         DracoMesh decoded = decode_draco(accessors_.view(index_member(draco->second, "bufferView")),
-                                         draco_attributes(draco->second));
+                                         draco_attributes(draco->second),
+                                         counted ? accessors_.count(indices->second) / 3 : MaxDracoFaces);
         mesh = std::move(decoded.mesh);
         source.sets = std::move(decoded.sets);
         for (const JointSet& set : source.sets)

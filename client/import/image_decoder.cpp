@@ -1,20 +1,24 @@
 #include "client/import/image_decoder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <string>
 
+#include "client/import/jpeg_check.h"
 #include "client/import/limits.h"
+#include "mediator/picture/color.h"
+#include "mediator/picture/hdr_reader.h"
+#include "mediator/picture/png_reader.h"
 
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_NO_STDIO
-#define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
 #define STBI_ONLY_BMP
 #define STBI_ONLY_TGA
-#define STBI_ONLY_HDR
+#define STBI_NO_LINEAR
 #define STBI_MAX_DIMENSIONS 16384
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -26,13 +30,11 @@
 namespace tessera::import {
 namespace {
 
-// Upper bound of pixels per byte of the file. Deflate repeats at most 1032 bytes per byte of
-// input, and a PNG pixel takes at least an eighth of a byte; a progressive JPEG spends at least one bit on 16
-// x 16 pixels. The others store runs of at most 128 pixels in two bytes.
-std::uint64_t pixels_per_byte(std::span<const unsigned char> bytes) {
-    const bool png = bytes.size() > 1 && bytes[0] == 0x89 && bytes[1] == 'P';
-    const bool jpeg = bytes.size() > 1 && bytes[0] == 0xff && bytes[1] == 0xd8;
-    return png ? 1032 * 8 : jpeg ? 256 * 8 : 128;
+// Upper bound of pixels per byte of the file: a BMP has a bit per pixel, a TGA runs of 128 pixels in two bytes.
+constexpr std::uint64_t PixelsPerByte = 64;
+
+bool is_jpeg(std::span<const unsigned char> bytes) {
+    return bytes.size() > 1 && bytes[0] == 0xff && bytes[1] == 0xd8;
 }
 
 struct Size {
@@ -52,7 +54,7 @@ Expected<Size> checked_size(std::span<const unsigned char> bytes) {
                                &components) ||
         size.width <= 0 || size.height <= 0) {
         return failure(ErrorCode::InvalidInput,
-                       "the image is damaged or neither PNG, JPEG, BMP, TGA nor HDR");
+                       "the image is damaged or neither PNG, JPEG, BMP, TGA nor Radiance");
     }
     const std::string claim =
         "the image claims " + std::to_string(size.width) + " x " + std::to_string(size.height) + " pixels, ";
@@ -62,9 +64,11 @@ Expected<Size> checked_size(std::span<const unsigned char> bytes) {
                                                     " by " + std::to_string(MaxImagePixels / MaxImageEdge) +
                                                     " that are read");
     }
-    if (size.pixels() / pixels_per_byte(bytes) > bytes.size()) {
+    if (is_jpeg(bytes)) {
+        if (const auto checked = check_jpeg(bytes); !checked) return tl::unexpected<Error>(checked.error());
+    } else if (size.pixels() / PixelsPerByte > bytes.size()) {
         return failure(ErrorCode::InvalidInput,
-                       claim + "but has only " + std::to_string(bytes.size()) + " bytes");
+                       claim + "but has only " + std::to_string(bytes.size()) + " bytes: save it again");
     }
     return size;
 }
@@ -74,9 +78,30 @@ tl::unexpected<Error> damaged() {
                    "the image is damaged (" + std::string(stbi_failure_reason()) + ")");
 }
 
+// Not by stb_image 2.27, which never returns from a truncated run.
+Expected<DecodedImage> radiance_image(std::span<const std::byte> bytes) try {
+    const frame::Image linear = picture::decode_hdr(bytes, ImageLimits);
+    DecodedImage image{linear.width, linear.height, {}};
+    image.rgba.reserve(linear.pixel_count() * 4);
+    for (std::size_t i = 0; i < linear.pixel_count(); ++i) {
+        for (const float value : linear.pixel(i)) {
+            const double level = picture::srgb_from_linear(std::min(double{value}, 1.0));
+            image.rgba.push_back(static_cast<std::uint8_t>(std::lround(level * 255.0)));
+        }
+        image.rgba.push_back(255);
+    }
+    return image;
+} catch (const Error& error) {
+    return tl::unexpected<Error>(error);
+}
+
 }  // namespace
 
 Expected<DecodedImage> decode_image(std::span<const unsigned char> bytes) {
+    if (picture::is_hdr(std::as_bytes(bytes))) return radiance_image(std::as_bytes(bytes));
+    // Not by stb_image, which decompresses all that the bytes expand to, whatever the header says.
+    if (picture::is_png(std::as_bytes(bytes)))
+        return picture::read_png_rgba(std::as_bytes(bytes), ImageLimits);
     const Expected<Size> size = checked_size(bytes);
     if (!size) return tl::unexpected<Error>(size.error());
     int width = 0, height = 0, components = 0;
@@ -86,22 +111,6 @@ Expected<DecodedImage> decode_image(std::span<const unsigned char> bytes) {
     if (!decoded) return damaged();
     DecodedImage image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
     image.rgba.assign(decoded.get(), decoded.get() + std::size_t{image.width} * image.height * 4);
-    return image;
-}
-
-Expected<frame::Image> decode_hdr(std::span<const unsigned char> bytes) {
-    const Expected<Size> size = checked_size(bytes);
-    if (!size) return tl::unexpected<Error>(size.error());
-    const int byte_size = static_cast<int>(bytes.size());
-    if (!stbi_is_hdr_from_memory(bytes.data(), byte_size)) {
-        return failure(ErrorCode::InvalidInput, "the image is not a Radiance HDR image");
-    }
-    int width = 0, height = 0, components = 0;
-    const std::unique_ptr<float, decltype(&stbi_image_free)> decoded(
-        stbi_loadf_from_memory(bytes.data(), byte_size, &width, &height, &components, 3), &stbi_image_free);
-    if (!decoded) return damaged();
-    frame::Image image(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), 3);
-    std::copy_n(decoded.get(), image.values.size(), image.values.begin());
     return image;
 }
 

@@ -1,25 +1,16 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <span>
-#include <vector>
 
 #include "mediator/base/error.h"
-#include "mediator/frame/image.h"
+#include "mediator/picture/png_reader.h"
 
 namespace tessera::import {
 
-struct DecodedImage {
-    std::uint32_t width = 0, height = 0;
-    std::vector<std::uint8_t> rgba;  // rows from the top
-};
+using DecodedImage = picture::RgbaImage;
 
-// PNG, JPEG, BMP or TGA. Before anything is allocated, the size in the header is checked against the limits
+// PNG, JPEG, BMP, TGA or Radiance (converted to sRGB, 1 is the brightest). Before anything is allocated, the size in the header is checked against the limits
 // and against the number of bytes available. InvalidInput says what is wrong.
 Expected<DecodedImage> decode_image(std::span<const unsigned char> bytes);
-
-// A Radiance image (.hdr): three linear components. Checked in the same way.
-Expected<frame::Image> decode_hdr(std::span<const unsigned char> bytes);
 
 }  // namespace tessera::import

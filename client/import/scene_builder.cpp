@@ -61,6 +61,25 @@ ObjectId SceneBuilder::add(scene::Object object) {
     return id;
 }
 
+void SceneBuilder::adopt(ObjectId id, scene::Object object) {
+    if (auto* root = std::get_if<scene::Root>(&object)) {
+        result_.root = std::move(*root);
+        return;
+    }
+    if (id.value != options_.first_id.value + result_.objects.size() || id >= options_.end_id)
+        throw Error(ErrorCode::InvalidInput, "the ids of its objects have a gap: export it again");
+    const scene::ObjectKind kind = scene::kind(object);
+    ++added_[kind];
+    std::visit([&](const auto& value) { names_.emplace(kind, value.name); }, object);
+    if (const auto* geometry = std::get_if<scene::Geometry>(&object)) {
+        Bounds& bounds = bounds_[id];
+        const auto positions = stored(geometry->positions).as<glm::vec3>();
+        for (const std::uint32_t index : stored(geometry->indices).as<std::uint32_t>())
+            bounds.add(glm::dvec3(positions[index]));
+    }
+    result_.objects.push_back({id, std::move(object)});
+}
+
 scene::BlobRef SceneBuilder::blob(std::span<const std::byte> bytes) {
     if (bytes.empty()) return {};
     spend(bytes.size());

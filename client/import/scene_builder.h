@@ -40,6 +40,10 @@ class SceneBuilder {
     scene::BlobRef blob(std::span<const std::byte> bytes);  // empty gives an empty reference
     const scene::Blob& stored(const scene::BlobRef& blob) const { return *blobs_.at(blob.hash); }
 
+    // Adds an object as another builder with the same options has made it, in the order of ids; the root, too. Its
+    // blobs are there already. Throws Error{InvalidInput} if it is not the next.
+    void adopt(ObjectId id, scene::Object object);
+
     // Counts decoded bytes that do not become a blob.
     void spend(std::uint64_t bytes);
 

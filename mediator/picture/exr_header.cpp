@@ -1,9 +1,11 @@
 #include "mediator/picture/exr_header.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <vector>
 
 #include "mediator/base/error.h"
 
@@ -41,10 +43,13 @@ class Reader {
         return result;
     }
     void skip(std::int64_t bytes) {
-        if (bytes < 0 || bytes > size_ - static_cast<std::int64_t>(file_.tellg()))
+        if (bytes < 0 || bytes > size_ - position())
             throw damaged("its header has an attribute that is larger than the file");
         file_.seekg(bytes, std::ios::cur);
     }
+
+    std::int64_t position() { return static_cast<std::int64_t>(file_.tellg()); }
+    std::int64_t size() const { return size_; }
 
   private:
     void require_good() {
@@ -54,7 +59,36 @@ class Reader {
     std::int64_t size_ = 0;
 };
 
-Rect checked_window(const std::array<std::int32_t, 4>& box) {
+struct Storage {
+    std::uint8_t compression = 0;
+    bool tiled = false;
+    std::array<std::uint32_t, 2> tile{};
+};
+
+struct ExrChannel {
+    std::int32_t byte_size = 0, x_sampling = 0, y_sampling = 0;
+};
+
+// Of a compression, by its number in files: the scan lines of a chunk, and an upper bound of raw bytes per compressed
+// byte.
+struct Compression {
+    std::int64_t lines = 1, ratio = 1;
+};
+constexpr std::int64_t DeflateRatio = 1032;  // RFC 1951: at most 258 bytes per two bits
+constexpr std::array<Compression, 10> Compressions{{
+    {1, 1},                        // none
+    {1, 64},                       // RLE: runs of at most 128 bytes in two
+    {1, DeflateRatio},             // ZIPS
+    {16, DeflateRatio},            // ZIP
+    {32, DeflateRatio},            // PIZ: Huffman codes with runs of 256 half floats in ten bits
+    {16, DeflateRatio * 4 / 3},    // PXR24: deflate after one of four bytes is dropped
+    {32, 3},                       // B44: 32 bytes in 14
+    {32, 11},                      // B44A: 32 bytes in three
+    {32, std::int64_t{1} << 15},   // DWAA: quantised cosine transform, then Huffman codes or deflate
+    {256, std::int64_t{1} << 15},  // DWAB
+}};
+
+Rect checked_window(const std::array<std::int32_t, 4>& box, const PictureLimits& limits) {
     const auto [left, top, right, bottom] = box;
     const std::int64_t width = std::int64_t{right} - left + 1, height = std::int64_t{bottom} - top + 1;
     constexpr std::int64_t MaxCoordinate = std::int64_t{1} << 30;
@@ -62,48 +96,98 @@ Rect checked_window(const std::array<std::int32_t, 4>& box) {
         std::abs(std::int64_t{top}) > MaxCoordinate) {
         throw damaged("its data window is empty or out of range");
     }
-    if (width > MaxPicturePixels || height > MaxPicturePixels || width * height > MaxPicturePixels) {
+    if (width > limits.side || height > limits.side || width * height > limits.pixels) {
         throw Error(ErrorCode::InvalidInput, "it claims " + std::to_string(width) + " x " +
                                                  std::to_string(height) + " pixels, more than the " +
-                                                 std::to_string(MaxPicturePixels) +
+                                                 std::to_string(limits.pixels) +
                                                  " that are supported: scale it down");
     }
     return {left, top, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
 }
 
-void check_version(Reader& reader) {
-    constexpr std::uint32_t Magic = 20000630, NumberMask = 0xff, Deep = 0x800, SeveralParts = 0x1000;
+// Returns whether the pixels are in tiles.
+bool check_version(Reader& reader) {
+    constexpr std::uint32_t Magic = 20000630, NumberMask = 0xff, Tiled = 0x200, Deep = 0x800,
+                            SeveralParts = 0x1000;
     if (reader.value<std::uint32_t>() != Magic) throw damaged("it is not an OpenEXR file");
     const auto version = reader.value<std::uint32_t>();
     if ((version & NumberMask) != 2) throw damaged("its version of OpenEXR is not 2");
     if (version & (Deep | SeveralParts)) {
         throw Error(ErrorCode::InvalidInput, "it has deep pixels or several parts: save it as one flat part");
     }
+    return (version & Tiled) != 0;
+}
+
+std::vector<ExrChannel> read_channels(Reader& reader, std::int32_t size) {
+    const std::int64_t end = reader.position() + size;
+    std::vector<ExrChannel> channels;
+    while (!reader.text().empty()) {
+        const auto type = reader.value<std::int32_t>();
+        reader.skip(4);  // whether it is linear, and three reserved bytes
+        const auto sampling = reader.value<std::array<std::int32_t, 2>>();
+        constexpr std::int32_t Half = 1, Types = 3;
+        if (type < 0 || type >= Types || sampling[0] < 1 || sampling[1] < 1)
+            throw damaged("its header has an impossible channel");
+        channels.push_back({type == Half ? 2 : 4, sampling[0], sampling[1]});
+    }
+    if (reader.position() != end) throw damaged("its list of channels has a wrong size");
+    return channels;
+}
+
+void check_storage(const Storage& storage, const std::vector<ExrChannel>& channels, const Rect& window,
+                   std::int64_t file_size) {
+    if (storage.compression >= Compressions.size()) throw damaged("its compression is unknown");
+    const Compression& compression = Compressions[storage.compression];
+    const std::int64_t width = window.width, height = window.height;
+    std::int64_t raw = 0;
+    for (const ExrChannel& channel : channels)
+        raw += (width / channel.x_sampling) * (height / channel.y_sampling) * channel.byte_size;
+    std::int64_t chunks = (height + compression.lines - 1) / compression.lines;
+    std::int64_t chunk_bytes = 16;  // an offset, the first line and a size
+    if (storage.tiled) {
+        // A tile may be larger than a small picture.
+        constexpr std::int64_t SmallTile = std::int64_t{2048} * 2048;
+        const std::int64_t across = storage.tile[0], down = storage.tile[1];
+        if (across < 1 || down < 1) throw damaged("its tiles are empty");
+        if (across > MaxPicturePixels || down > MaxPicturePixels ||
+            across * down > std::max(SmallTile, width * height)) {
+            throw damaged("its tiles are too large");
+        }
+        chunks = ((width + across - 1) / across) * ((height + down - 1) / down);
+        chunk_bytes = 28;  // an offset, four coordinates and a size
+    }
+    if (raw / compression.ratio > file_size || chunks * chunk_bytes > file_size) {
+        throw damaged("it claims " + std::to_string(width) + " x " + std::to_string(height) +
+                      " pixels, but has only " + std::to_string(file_size) + " bytes");
+    }
 }
 
 }  // namespace
 
-Rect checked_exr_window(const std::string& path) {
+Rect checked_exr_window(const std::string& path, const PictureLimits& limits) {
     Reader reader(path);
-    check_version(reader);
+    Storage storage;
+    storage.tiled = check_version(reader);
     std::optional<Rect> window;
+    std::vector<ExrChannel> channels;
     for (std::string name = reader.text(); !name.empty(); name = reader.text()) {
         reader.text();  // its type
         const auto size = reader.value<std::int32_t>();
         if (name == "dataWindow" && size == sizeof(std::array<std::int32_t, 4>)) {
-            window = checked_window(reader.value<std::array<std::int32_t, 4>>());
+            window = checked_window(reader.value<std::array<std::int32_t, 4>>(), limits);
         } else if (name == "tiles" && size >= 8) {
-            const auto tile = reader.value<std::array<std::uint32_t, 2>>();
-            if (tile[0] > MaxPicturePixels || tile[1] > MaxPicturePixels ||
-                std::int64_t{tile[0]} * tile[1] > MaxPicturePixels) {
-                throw damaged("its tiles are too large");
-            }
+            storage.tile = reader.value<std::array<std::uint32_t, 2>>();
             reader.skip(size - 8);
+        } else if (name == "compression" && size == 1) {
+            storage.compression = reader.value<std::uint8_t>();
+        } else if (name == "channels") {
+            channels = read_channels(reader, size);
         } else {
             reader.skip(size);
         }
     }
     if (!window) throw damaged("its header has no data window");
+    check_storage(storage, channels, *window, reader.size());
     return *window;
 }
 

@@ -17,7 +17,7 @@ struct Picture {
 // One layer of an OpenEXR file, scan lines or tiles (of the finest level), half, float or integer, as floats;
 // layer "" has the channels without a layer name. Components are R G B if the layer has these (without A), else X Y Z,
 // else all channels of the layer, sorted by name. At most
-// MaxPicturePixels (exr_header.h). Throws Error{NotFound} if there is no such file, Error{InvalidInput} if it is
+// MaxPicturePixels. Throws Error{NotFound} if there is no such file, Error{InvalidInput} if it is
 // damaged, too large or has no such layer (the message lists its layers).
 Picture read_exr(const std::string& path, const std::string& layer = "");
 

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "mediator/base/error.h"
-#include "mediator/picture/exr_header.h"
 
 namespace tessera::picture {
 
@@ -59,7 +58,7 @@ std::int64_t number(std::string_view text) {
     return error == std::errc() && end == text.data() + text.size() ? value : 0;
 }
 
-Size read_header(HdrBytes& reader) {
+Size read_header(HdrBytes& reader, const PictureLimits& limits) {
     const std::string magic = reader.left() > 2 ? reader.line() : "";
     if (magic != "#?RADIANCE" && magic != "#?RGBE") throw damaged_hdr("it is not a Radiance picture");
     bool rgbe = false;
@@ -73,15 +72,15 @@ Size read_header(HdrBytes& reader) {
     const Size size{number(std::string_view(line).substr(x + 4)),
                     number(std::string_view(line).substr(3, x - 3))};
     if (size.width < 1 || size.height < 1) throw damaged_hdr("its size is not two positive numbers");
-    if (size.width > MaxPicturePixels || size.height > MaxPicturePixels ||
-        size.width * size.height > MaxPicturePixels) {
+    if (size.width > limits.side || size.height > limits.side || size.width * size.height > limits.pixels) {
         throw Error(ErrorCode::InvalidInput, "it claims " + std::to_string(size.width) + " x " +
                                                  std::to_string(size.height) + " pixels, more than the " +
-                                                 std::to_string(MaxPicturePixels) +
+                                                 std::to_string(limits.pixels) +
                                                  " that are supported: scale it down");
     }
-    // Every encoding needs at least four bytes per row.
-    if (4 * size.height > static_cast<std::int64_t>(reader.left()))
+    // A row needs a pixel, a second one to repeat it up to 255 times, and a third beyond.
+    const std::int64_t least = size.width == 1 ? 4 : size.width <= 256 ? 8 : 12;
+    if (least * size.height > static_cast<std::int64_t>(reader.left()))
         throw damaged_hdr("it is shorter than its size claims");
     return size;
 }
@@ -136,9 +135,14 @@ void decode(const Rgbe& pixel, std::span<float> rgb) {
 
 }  // namespace
 
-frame::Image decode_hdr(std::span<const std::byte> bytes) {
+bool is_hdr(std::span<const std::byte> bytes) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    return text.starts_with("#?RADIANCE\n") || text.starts_with("#?RGBE\n");
+}
+
+frame::Image decode_hdr(std::span<const std::byte> bytes, const PictureLimits& limits) {
     HdrBytes reader(bytes);
-    const Size size = read_header(reader);
+    const Size size = read_header(reader, limits);
     frame::Image image(static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height), 3);
     std::vector<Rgbe> row(image.width);
     for (std::size_t y = 0; y < image.height; ++y) {

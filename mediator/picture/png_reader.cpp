@@ -49,11 +49,23 @@ class PngReader {
     PngReader(const PngReader&) = delete;
     PngReader& operator=(const PngReader&) = delete;
 
+    enum class Format { WithoutAlpha, Rgba8 };
+    // Before the conversion to the format.
     bool read_header() {
         if (setjmp(png_jmpbuf(png_)) != 0) return false;
         png_read_info(png_, info_);
+        return true;
+    }
+    bool convert_to(Format format) {
+        if (setjmp(png_jmpbuf(png_)) != 0) return false;
         png_set_expand(png_);
-        png_set_strip_alpha(png_);
+        if (format == Format::Rgba8) {
+            png_set_strip_16(png_);
+            png_set_gray_to_rgb(png_);
+            png_set_add_alpha(png_, 0xff, PNG_FILLER_AFTER);
+        } else {
+            png_set_strip_alpha(png_);
+        }
         png_read_update_info(png_, info_);
         return true;
     }
@@ -76,33 +88,73 @@ class PngReader {
     png_infop info_;
 };
 
-}  // namespace
+tl::unexpected<Error> damaged_png(const PngReader& reader) {
+    return failure(ErrorCode::InvalidInput,
+                   "the PNG picture is damaged (" + reader.message() + "): write it again");
+}
 
-Expected<frame::Image> read_png(std::span<const std::byte> bytes) {
-    if (bytes.size() < 8 || png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, 8) != 0)
-        return failure(ErrorCode::InvalidInput, "it is not a PNG picture");
-    Source source{bytes};
-    PngReader reader(source);
-    const auto damaged = [&] {
-        return failure(ErrorCode::InvalidInput, "the PNG picture is damaged: " + reader.message());
-    };
-    if (!reader.read_header()) return damaged();
-    // Deflate expands a byte to at most 1032; rejects headers that claim more before allocating.
-    if (reader.row_bytes() * reader.height() > 1040 * bytes.size() + 65536)
-        return failure(ErrorCode::InvalidInput, "the PNG picture claims more pixels than its bytes can hold");
+// Reads the header and checks it before pixels are allocated.
+Expected<void> start(PngReader& reader, std::size_t byte_size, const PictureLimits& limits) {
+    if (!reader.read_header()) return damaged_png(reader);
+    const std::string claim = "the image claims " + std::to_string(reader.width()) + " x " +
+                              std::to_string(reader.height()) + " pixels, ";
+    const std::int64_t width = reader.width(), height = reader.height();
+    if (width > limits.side || height > limits.side || width * height > limits.pixels)
+        return failure(ErrorCode::InvalidInput, claim + "more than the " + std::to_string(limits.pixels) +
+                                                    " that are supported: scale it down");
+    constexpr std::size_t DeflateRatio = 1032;  // RFC 1951: at most 258 bytes per two bits
+    if (reader.row_bytes() * reader.height() / DeflateRatio > byte_size)
+        return failure(ErrorCode::InvalidInput,
+                       claim + "but has only " + std::to_string(byte_size) + " bytes: write it again");
+    return {};
+}
+
+// The pixels in a format, row by row.
+Expected<std::vector<std::uint8_t>> pixels(PngReader& reader, PngReader::Format format) {
+    if (!reader.convert_to(format)) return damaged_png(reader);
     std::vector<std::uint8_t> values(reader.row_bytes() * reader.height());
     std::vector<png_bytep> rows;
     for (std::uint32_t y = 0; y < reader.height(); ++y)
         rows.push_back(values.data() + y * reader.row_bytes());
-    if (!reader.read_rows(rows.data())) return damaged();
+    if (!reader.read_rows(rows.data())) return damaged_png(reader);
+    return values;
+}
 
+}  // namespace
+
+bool is_png(std::span<const std::byte> bytes) {
+    return bytes.size() >= 8 && png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, 8) == 0;
+}
+
+Expected<RgbaImage> read_png_rgba(std::span<const std::byte> bytes, const PictureLimits& limits) {
+    if (!is_png(bytes)) return failure(ErrorCode::InvalidInput, "it is not a PNG picture: write it again");
+    Source source{bytes};
+    PngReader reader(source);
+    if (const auto started = start(reader, bytes.size(), limits); !started)
+        return tl::unexpected<Error>(started.error());
+    auto rgba = pixels(reader, PngReader::Format::Rgba8);
+    if (!rgba) return tl::unexpected<Error>(rgba.error());
+    return RgbaImage{reader.width(), reader.height(), std::move(*rgba)};
+}
+
+Expected<frame::Image> read_png(std::span<const std::byte> bytes) {
+    if (!is_png(bytes)) return failure(ErrorCode::InvalidInput, "it is not a PNG picture: write it again");
+    Source source{bytes};
+    PngReader reader(source);
+    constexpr PictureLimits Limits{.side = MaxSide, .pixels = std::int64_t{MaxSide} * MaxSide};
+    if (const auto started = start(reader, bytes.size(), Limits); !started)
+        return tl::unexpected<Error>(started.error());
+    const auto values = pixels(reader, PngReader::Format::WithoutAlpha);
+    if (!values) return tl::unexpected<Error>(values.error());
     frame::Image image(reader.width(), reader.height(), reader.components());
     const std::size_t per_row = std::size_t{image.width} * image.components;
     for (std::uint32_t y = 0; y < image.height; ++y)
-        for (std::size_t i = 0; i < per_row; ++i)
+        for (std::size_t i = 0; i < per_row; ++i) {
+            const std::uint8_t* row = values->data() + y * reader.row_bytes();
             image.values[y * per_row + i] =
-                reader.is_deep() ? static_cast<float>((rows[y][2 * i] << 8) + rows[y][2 * i + 1]) / 65535.0f
-                                 : static_cast<float>(rows[y][i]) / 255.0f;
+                reader.is_deep() ? static_cast<float>((row[2 * i] << 8) + row[2 * i + 1]) / 65535.0f
+                                 : static_cast<float>(row[i]) / 255.0f;
+        }
     return image;
 }
 

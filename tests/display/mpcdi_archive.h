@@ -21,14 +21,17 @@ inline std::string pfm(std::uint32_t columns, std::uint32_t rows, const std::vec
 
 using Entries = std::vector<std::pair<std::string, std::string>>;
 
-inline std::vector<std::byte> zipped(const Entries& entries) {
+inline std::vector<std::byte> zipped(const Entries& entries, int compression = ZIP_CM_DEFAULT) {
     zip_error_t error;
     zip_error_init(&error);
     zip_source_t* target = zip_source_buffer_create(nullptr, 0, 0, &error);
     zip_source_keep(target);
     zip_t* archive = zip_open_from_source(target, ZIP_TRUNCATE, &error);
-    for (const auto& [name, content] : entries)
-        zip_file_add(archive, name.c_str(), zip_source_buffer(archive, content.data(), content.size(), 0), 0);
+    for (const auto& [name, content] : entries) {
+        const zip_int64_t index = zip_file_add(
+            archive, name.c_str(), zip_source_buffer(archive, content.data(), content.size(), 0), 0);
+        zip_set_file_compression(archive, static_cast<zip_uint64_t>(index), compression, 0);
+    }
     zip_close(archive);
     zip_source_open(target);
     zip_source_seek(target, 0, SEEK_END);

@@ -243,6 +243,19 @@ TEST(MpcdiErrors, RejectsPathTraversalAndZipBombs) {
         << bomb.error().what();
 }
 
+TEST(MpcdiErrors, AFlippedByteOfAStoredEntryIsFoundByItsChecksum) {
+    const std::string text = xml("2d", region("region"), "");
+    auto bytes = zipped({{"mpcdi.xml", text}}, ZIP_CM_STORE);
+    ASSERT_TRUE(parse_mpcdi(bytes, "a.mpcdi"));
+    const std::string all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    bytes[all.find("\"region\"") + 1] ^= std::byte{1};  // another name, which is valid, too
+    const auto mpcdi = parse_mpcdi(bytes, "a.mpcdi");
+    ASSERT_FALSE(mpcdi);
+    EXPECT_NE(std::string(mpcdi.error().what()).find("'mpcdi.xml' cannot be unpacked (CRC error)"),
+              std::string::npos)
+        << mpcdi.error().what();
+}
+
 TEST(MpcdiErrors, DamagedArchivesAreReadOrRejected) {
     const std::string sets = files("r", std::string(Warp) + "<alphaMap><path>a.png</path></alphaMap>");
     const auto whole = zipped({{"mpcdi.xml", xml("3d", region("r", Frustum), sets)},

@@ -18,7 +18,7 @@ struct Compressed {
 };
 
 // A unit square of two triangles that faces +z.
-Compressed compressed_square() {
+Compressed compressed_square(draco::MeshEncoderMethod method = draco::MESH_EDGEBREAKER_ENCODING) {
     draco::TriangleSoupMeshBuilder builder;
     builder.Start(2);
     const int position = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
@@ -35,6 +35,7 @@ Compressed compressed_square() {
     }
     const std::unique_ptr<draco::Mesh> mesh = builder.Finalize();
     draco::Encoder encoder;
+    encoder.SetEncodingMethod(method);
     encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, 14);
     draco::EncoderBuffer buffer;
     EXPECT_TRUE(encoder.EncodeMeshToBuffer(*mesh, &buffer).ok());
@@ -91,21 +92,23 @@ SceneFile skin_file(const CompressedSkin& skin, const std::string& weights) {
 }
 
 // As exporters write it: accessors without buffer views, the data in the extension.
-SceneFile draco_file(const Compressed& square, std::uint32_t position_id) {
+enum class WithIndices { No, Yes };
+SceneFile draco_file(const Compressed& square, std::uint32_t position_id,
+                     WithIndices with_indices = WithIndices::Yes) {
     SceneFile file;
     file.set("extensionsRequired", R"(["KHR_draco_mesh_compression"])");
     const int view = file.view_of_bytes(square.bytes);
     const int indices = file.add("accessors", R"({"componentType":5123,"type":"SCALAR","count":6})");
     const int position = file.add("accessors", R"({"componentType":5126,"type":"VEC3","count":4})");
     const int uv = file.add("accessors", R"({"componentType":5126,"type":"VEC2","count":4})");
-    file.add("meshes", R"({"name":"bad","primitives":[{"attributes":{"POSITION":)" +
-                           std::to_string(position) + R"(,"NORMAL":)" + std::to_string(position) +
-                           R"(,"TEXCOORD_0":)" + std::to_string(uv) + R"(},"indices":)" +
-                           std::to_string(indices) +
-                           R"(,"extensions":{"KHR_draco_mesh_compression":{"bufferView":)" +
-                           std::to_string(view) + R"(,"attributes":{"POSITION":)" +
-                           std::to_string(position_id) + R"(,"NORMAL":)" + std::to_string(square.normal) +
-                           R"(,"TEXCOORD_0":)" + std::to_string(square.tex_coord) + "}}}}]}");
+    file.add("meshes",
+             R"({"name":"bad","primitives":[{"attributes":{"POSITION":)" + std::to_string(position) +
+                 R"(,"NORMAL":)" + std::to_string(position) + R"(,"TEXCOORD_0":)" + std::to_string(uv) + "}" +
+                 (with_indices == WithIndices::Yes ? R"(,"indices":)" + std::to_string(indices) : "") +
+                 R"(,"extensions":{"KHR_draco_mesh_compression":{"bufferView":)" + std::to_string(view) +
+                 R"(,"attributes":{"POSITION":)" + std::to_string(position_id) + R"(,"NORMAL":)" +
+                 std::to_string(square.normal) + R"(,"TEXCOORD_0":)" + std::to_string(square.tex_coord) +
+                 "}}}}]}");
     file.add("nodes", R"({"mesh":0})");
     file.add("scenes", R"({"nodes":[0]})");
     return file;
@@ -163,6 +166,32 @@ TEST(Draco, AnAttributeThatIsNotThereIsAPlaceholder) {
     const ImportedScene scene = loaded(folder.write("scene.glb", draco_file(compressed_square(), 77).glb()));
     EXPECT_TRUE(has_notice(scene, "its Draco data has no attribute POSITION"));
     EXPECT_EQ(scene.counts.placeholders, 1u);
+}
+
+TEST(Draco, CountsOfTheDataAreCheckedBeforeItIsDecoded) {
+    constexpr std::size_t HeaderBytes = 11;
+    struct Case {
+        draco::MeshEncoderMethod method;
+        std::size_t faces;  // where their count is
+    };
+    for (const Case& each : {Case{draco::MESH_EDGEBREAKER_ENCODING, HeaderBytes + 2},
+                             Case{draco::MESH_SEQUENTIAL_ENCODING, HeaderBytes}}) {
+        SCOPED_TRACE(each.method);
+        const TestFolder folder;
+        Compressed square = compressed_square(each.method);
+        const auto import = [&](WithIndices with_indices) {
+            return loaded(folder.write("scene.glb", draco_file(square, square.position, with_indices).glb()));
+        };
+        EXPECT_EQ(import(WithIndices::Yes).counts.placeholders, 0u);
+        EXPECT_EQ(import(WithIndices::No).counts.placeholders, 0u);
+        ASSERT_EQ(square.bytes[each.faces], 2);
+        square.bytes.replace(each.faces, 1, "\xff\xff\xff\x07");  // of seven bits each
+        EXPECT_TRUE(
+            has_notice(import(WithIndices::Yes), "claims 16777215 triangles, but its indices state 2"));
+        EXPECT_TRUE(has_notice(import(WithIndices::No), "claims 16777215 triangles, but has only"));
+        square.bytes.replace(each.faces, 4, "\xff\xff\xff\xff\x01");
+        EXPECT_TRUE(has_notice(import(WithIndices::No), "triangles, more than the 16777216 that are read"));
+    }
 }
 
 TEST(Draco, DamagedDataIsAPlaceholderOrAMesh) {

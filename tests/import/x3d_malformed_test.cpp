@@ -155,14 +155,14 @@ TEST(X3dMalformed, BadMeshesAreAPlaceholder) {
 
 TEST(X3dMalformed, AFanOfManyFacesEnds) {
     std::string indices, points = "0 0 0 ";
-    constexpr int Faces = 200'000;  // a quadratic comparison would time out
-    for (int i = 1; i <= Faces + 1; ++i) {
+    constexpr int FaceCount = 200'000;  // a quadratic comparison would time out
+    for (int i = 1; i <= FaceCount + 1; ++i) {
         points += std::to_string(i) + " " + std::to_string(i % 7) + " 1 ";
-        if (i <= Faces) indices += "0 " + std::to_string(i) + " " + std::to_string(i + 1) + " -1 ";
+        if (i <= FaceCount) indices += "0 " + std::to_string(i) + " " + std::to_string(i + 1) + " -1 ";
     }
     const ImportedScene scene = read_x3d("<Shape><IndexedFaceSet creaseAngle='0.5' coordIndex='" + indices +
                                          "'><Coordinate point='" + points + "'/></IndexedFaceSet></Shape>");
-    EXPECT_EQ(scene.counts.triangles, static_cast<std::uint64_t>(Faces));
+    EXPECT_EQ(scene.counts.triangles, static_cast<std::uint64_t>(FaceCount));
 }
 
 TEST(X3dMalformed, ManyProblemsGiveAShortList) {

@@ -1,0 +1,110 @@
+#include "client/import/jpeg_check.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "client/import/limits.h"
+
+namespace tessera::import {
+namespace {
+
+enum JpegMarker : unsigned char { Restart0 = 0xd0, Restart7 = 0xd7, EndOfImage = 0xd9, StartOfScan = 0xda };
+
+struct JpegFrame {
+    std::uint64_t width = 0, height = 0;
+    std::uint64_t least_bits = 0;
+    std::uint64_t scans = 0;
+};
+
+bool starts_frame(unsigned char marker) {
+    return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+}
+
+bool has_length(unsigned char marker) {
+    return marker > 0x01 && !(marker >= Restart0 && marker <= Restart7) && marker != 0xd8;
+}
+
+std::uint64_t divided_up(std::uint64_t value, std::uint64_t by) {
+    return (value + by - 1) / by;
+}
+
+// `segment` begins after the length.
+void read_frame(std::span<const unsigned char> segment, unsigned char marker, JpegFrame& frame) {
+    if (segment.size() < 6) return;
+    frame.height = segment[1] * 256u + segment[2];
+    frame.width = segment[3] * 256u + segment[4];
+    struct Sampling {
+        std::uint64_t across, down;
+    };
+    std::vector<Sampling> components;
+    Sampling most{1, 1};
+    for (std::size_t at = 6; at + 3 <= segment.size() && components.size() < segment[5]; at += 3) {
+        components.push_back({segment[at + 1] / 16u, segment[at + 1] % 16u});
+        most = {std::max(most.across, components.back().across), std::max(most.down, components.back().down)};
+    }
+    const std::uint64_t bits_per_block = marker == 0xc2 ? 1 : 2;
+    frame.least_bits = 0;
+    for (const Sampling& sampling : components) {
+        frame.least_bits += divided_up(divided_up(frame.width * sampling.across, most.across), 8) *
+                            divided_up(divided_up(frame.height * sampling.down, most.down), 8) *
+                            bits_per_block;
+    }
+}
+
+// Position of the next marker's code from `at`; the size of the bytes if there is none. Within a scan, 0 and the codes
+// of restarts belong to the data.
+enum class Within { Headers, Scan };
+std::size_t next_marker(std::span<const unsigned char> bytes, std::size_t at, Within within) {
+    for (; at + 1 < bytes.size(); ++at) {
+        if (bytes[at] != 0xff || bytes[at + 1] == 0xff || bytes[at + 1] == 0) continue;
+        const bool restart = bytes[at + 1] >= Restart0 && bytes[at + 1] <= Restart7;
+        if (!restart || within == Within::Headers) return at + 1;
+    }
+    return bytes.size();
+}
+
+JpegFrame read_frame(std::span<const unsigned char> bytes) {
+    JpegFrame frame;
+    for (std::size_t at = next_marker(bytes, 2, Within::Headers); at < bytes.size();) {
+        const unsigned char marker = bytes[at++];
+        if (marker == EndOfImage) break;
+        Within within = Within::Headers;
+        if (has_length(marker)) {
+            if (bytes.size() - at < 2) break;
+            const std::size_t length = bytes[at] * 256u + bytes[at + 1];
+            if (length < 2 || length > bytes.size() - at) break;
+            if (starts_frame(marker) && frame.width == 0)  // stb_image uses the first one
+                read_frame(bytes.subspan(at + 2, length - 2), marker, frame);
+            if (marker == StartOfScan) {
+                ++frame.scans;
+                within = Within::Scan;
+            }
+            at += length;
+        }
+        at = next_marker(bytes, at, within);
+    }
+    return frame;
+}
+
+}  // namespace
+
+Expected<void> check_jpeg(std::span<const unsigned char> bytes) {
+    const JpegFrame frame = read_frame(bytes);
+    const std::uint64_t pixels = frame.width * frame.height;
+    const std::string claim = "the image claims " + std::to_string(frame.width) + " x " +
+                              std::to_string(frame.height) + " pixels, ";
+    if (std::max(frame.width, frame.height) > MaxImageEdge || pixels > MaxImagePixels)
+        return failure(ErrorCode::InvalidInput, claim + "more than the " + std::to_string(MaxImagePixels) +
+                                                    " that are read: scale it down");
+    if (frame.least_bits / 8 > bytes.size())
+        return failure(ErrorCode::InvalidInput,
+                       claim + "but has only " + std::to_string(bytes.size()) + " bytes: save it again");
+    if (frame.scans > MaxJpegScans || frame.scans * pixels > MaxJpegScanPixels)
+        return failure(ErrorCode::InvalidInput,
+                       claim + "in " + std::to_string(frame.scans) +
+                           " scans, which takes too long: save it as a baseline JPEG");
+    return {};
+}
+
+}  // namespace tessera::import
