@@ -18,6 +18,13 @@ std::optional<int> parse_options(int argc, const char* const* argv, MasterOption
                 options.heartbeat_seconds);
     line.option("--blob-quota", "MiB of meshes and textures that the master holds for the clients of one key",
                 options.blob_quota_mib);
+    line.option("--memory",
+                "MiB for films, meshes, textures and what waits to be sent; views and edits beyond it are "
+                "refused (default: three quarters of this machine's)",
+                options.memory_mib);
+    line.option("--io-threads",
+                "threads that encrypt and send; one does about 600 MB/s: more for many fast nodes",
+                options.io_threads);
     line.option("--session",
                 "folder that stores the live scene: edits, and checkpoints with the films; a "
                 "master started with it resumes the session",
@@ -54,6 +61,8 @@ std::optional<int> parse_options(int argc, const char* const* argv, MasterOption
     if (!(options.checkpoint_seconds >= 0.1 && options.checkpoint_seconds <= 3600.0)) {
         return usage("--checkpoint must be between 0.1 and 3600 seconds");
     }
+    if (options.io_threads < 1 || options.io_threads > 64) return usage("--io-threads must be between 1 and 64");
+    if (options.memory_mib != 0 && options.memory_mib < 64) return usage("--memory must be at least 64 MiB");
     if (!(options.orphan_seconds >= 0.0 && options.orphan_seconds <= 1e6))
         return usage("--orphan must be between 0 and 1000000 seconds");
     if (!(options.verify_percent >= 0.0 && options.verify_percent <= 100.0))

@@ -18,6 +18,8 @@ struct MasterOptions {
     std::string session;                   // folder; "" = live scenes end with the master
     double checkpoint_seconds = 10.0;
     double orphan_seconds = 600.0;
+    std::uint64_t io_threads = 1;
+    std::uint64_t memory_mib = 0;
     double verify_percent = 0.0;  // of the film of nodes
     cli::LogSettings log{.program = "tessera-master"};
 };

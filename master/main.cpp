@@ -28,7 +28,7 @@ master::EventSink event_log(const cli::Log& log) {
 
 int serve(const master::MasterOptions& options) {
     const cli::Log log(options.log);
-    const auto context = net::make_zmq_context();
+    const auto context = net::make_zmq_context(static_cast<int>(options.io_threads));
     net::ServerSettings server{.endpoint = options.listen};
     if (!options.keys.empty()) server.keys.emplace(options.keys);
     auto channel = net::make_zmq_server(context, server);
@@ -42,6 +42,7 @@ int serve(const master::MasterOptions& options) {
         const auto dropped = counters.dropped();
         return net::RefusedTraffic{counters.refused_handshakes(), dropped.revoked + dropped.malformed};
     };
+    settings.memory_limit = options.memory_mib << 20;
     settings.session_folder = options.session;
     settings.views.orphan_limit =
         std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options.orphan_seconds));

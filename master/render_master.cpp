@@ -56,7 +56,8 @@ RenderMaster::RenderMaster(std::unique_ptr<net::Channel> channel, std::shared_pt
               .render = {outputs_, film_, dispatcher_, view_ids_},
               .jobs = jobs_,
               .events = events_,
-              .collect_interval = settings.collect_interval}),
+              .collect_interval = settings.collect_interval,
+              .memory_limit = settings.memory_limit}),
       service_(blobs_, settings.blob_limits.bytes_total, sessions_, scene_, outbox_) {
     if (settings.session_folder.empty()) return;
     scene_.record_to(settings.session_folder, settings.checkpoint_interval, started_);

@@ -1,5 +1,7 @@
 #include "master/scene_session.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 
 #include "mediator/wire/envelope.h"
@@ -11,11 +13,17 @@ namespace {
 constexpr Duration VersionInterval = std::chrono::milliseconds(16);
 constexpr std::size_t MaxNameLength = 64;
 
+std::uint64_t three_quarters_of_memory() {
+    return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+           static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) / 4 * 3;
+}
+
 }  // namespace
 
 SceneSession::SceneSession(std::uint64_t epoch, const ViewSettings& settings, const MasterServices& services)
     : services_(services),
       owner_timeout_(settings.orphan_limit),
+      memory_limit_(services.memory_limit != 0 ? services.memory_limit : three_quarters_of_memory()),
       authority_(epoch, services.blobs),
       encoder_([&outputs = services.render.outputs](EncodedScene made) { outputs.put(std::move(made)); }),
       distributor_(authority_, encoder_, *services.blobs, services.outbox, services.events),
@@ -248,6 +256,10 @@ std::string SceneSession::open_view(const SessionRecord& session, std::uint64_t 
     }
     if (std::string problem = problem_of(wanted); !problem.empty()) return problem;
     if (std::string problem = viewer_problem(session, number, wanted); !problem.empty()) return problem;
+    view::View completed = wanted.view;
+    complete(completed);
+    if (std::string problem = memory_problem(film_bytes(completed), "the film of this view"); !problem.empty())
+        return problem;
     // Earlier edits are visible in the view, and the render origin follows the camera while it is the only one.
     publish_if_due(now);
     const bool waits_for_end = wanted.frames == session::Frames::Last;

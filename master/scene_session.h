@@ -30,6 +30,7 @@ struct MasterServices {
     JobStore& jobs;
     EventSink events;
     Duration collect_interval;  // of unused blobs; see blob_collector.h
+    std::uint64_t memory_limit = 0;  // 0: three quarters of the machine's memory
 };
 
 // Everything that belongs to one scene: content, edit history, replicas on nodes, views, display, files on disk,
@@ -50,6 +51,8 @@ class SceneSession {
     const SceneAuthority& authority() const { return authority_; }
     SceneDistributor& distributor() { return distributor_; }
     const SceneDistributor& distributor() const { return distributor_; }
+    // Why the master has no room for so many more bytes of `what`; "" = it has.
+    std::string memory_problem(std::uint64_t bytes, const std::string& what) const;
     BlobCollector& collector() { return collector_; }
     Views& views() { return views_; }
     const Views& views() const { return views_; }
@@ -147,6 +150,7 @@ class SceneSession {
 
     MasterServices services_;
     Duration owner_timeout_;
+    std::uint64_t memory_limit_;
     SceneAuthority authority_;
     SceneEncoder encoder_;
     SceneDistributor distributor_;

@@ -104,6 +104,8 @@ void SessionService::want(SessionRecord& session, const scene::BlobRef& blob) {
                         std::to_string(quota_ >> 20) +
                         ": remove some from the scene, or raise --blob-quota of the master");
     }
+    if (std::string problem = scene_.memory_problem(blob.byte_size, "a mesh or texture"); !problem.empty())
+        throw Error(ErrorCode::Refused, problem);
     if (auto wanted = session.fetcher.want(blob); !wanted) throw wanted.error();
 }
 

@@ -76,4 +76,10 @@ std::size_t Outbox::waiting_bytes(net::Link link, net::PeerId peer) const {
     return queue == queues_.end() ? 0 : queue->second.bytes;
 }
 
+std::size_t Outbox::waiting_bytes() const {
+    std::size_t bytes = 0;
+    for (const auto& [key, queue] : queues_) bytes += queue.bytes;
+    return bytes;
+}
+
 }  // namespace tessera::master

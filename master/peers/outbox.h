@@ -24,6 +24,7 @@ class Outbox {
     void flush();  // retries waiting messages
     bool waiting() const { return !queues_.empty(); }
     std::size_t waiting_bytes(net::Link link, net::PeerId peer) const;
+    std::size_t waiting_bytes() const;  // of all peers
     void forget(net::Link link, net::PeerId peer) { queues_.erase({link, peer}); }
 
     // Peers that are unreachable or over the limit of waiting bytes, to be removed. Clears the list.

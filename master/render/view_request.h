@@ -7,6 +7,11 @@
 
 namespace tessera::master {
 
+// Bytes of the statistics of all pixels of a view with the channels that its filter needs.
+inline std::uint64_t film_bytes(const view::View& completed) {
+    return 4 * (1 + std::uint64_t{completed.channels.plane_count()}) * completed.window.pixel_count();
+}
+
 // Checks sizes, camera, crop window, channels and counts. Empty = valid.
 std::string problem_of(const session::ViewRequest& request);
 std::string problem_of(const view::DisplayTransform& transform);

@@ -48,10 +48,8 @@ std::string Views::open(const ViewOwner& owner, std::uint64_t number, session::V
     if (std::string problem = problem_of(request); !problem.empty()) return problem;
     view::View completed = request.view;
     complete(completed);
-    const std::uint64_t film_bytes =
-        4 * (1 + completed.channels.plane_count()) * completed.window.pixel_count();
-    if (request.film && request.frames == session::Frames::All && film_bytes > MaxFilmBytes) {
-        return "the statistics of this view have " + std::to_string(film_bytes >> 20) +
+    if (request.film && request.frames == session::Frames::All && film_bytes(completed) > MaxFilmBytes) {
+        return "the statistics of this view have " + std::to_string(film_bytes(completed) >> 20) +
                " MiB a frame, more than 128: ask for a picture, fewer channels or a smaller window";
     }
     if (request.name.empty()) request.name = name_of_unnamed(owner, number);

@@ -155,8 +155,8 @@ class RouterPair final : public ZmqServer {
 
 }  // namespace
 
-std::shared_ptr<ZmqContext> make_zmq_context() {
-    return std::make_shared<ZmqContext>();
+std::shared_ptr<ZmqContext> make_zmq_context(int io_threads) {
+    return std::make_shared<ZmqContext>(io_threads);
 }
 
 ZapHandler& ZmqContext::zap() {
