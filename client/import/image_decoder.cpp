@@ -48,6 +48,9 @@ Expected<Size> checked_size(std::span<const unsigned char> bytes) {
     if (bytes.empty() || bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
         return failure(ErrorCode::InvalidInput, "the image has no bytes or more than 2 GiB");
     }
+    if (is_jpeg(bytes)) {  // before stb_image reads its tables
+        if (const auto checked = check_jpeg(bytes); !checked) return tl::unexpected<Error>(checked.error());
+    }
     Size size;
     int components = 0;
     if (!stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &size.width, &size.height,
@@ -64,9 +67,7 @@ Expected<Size> checked_size(std::span<const unsigned char> bytes) {
                                                     " by " + std::to_string(MaxImagePixels / MaxImageEdge) +
                                                     " that are read");
     }
-    if (is_jpeg(bytes)) {
-        if (const auto checked = check_jpeg(bytes); !checked) return tl::unexpected<Error>(checked.error());
-    } else if (size.pixels() / PixelsPerByte > bytes.size()) {
+    if (!is_jpeg(bytes) && size.pixels() / PixelsPerByte > bytes.size()) {
         return failure(ErrorCode::InvalidInput,
                        claim + "but has only " + std::to_string(bytes.size()) + " bytes: save it again");
     }
