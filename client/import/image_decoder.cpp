@@ -33,8 +33,11 @@ namespace {
 // Upper bound of pixels per byte of the file: a BMP has a bit per pixel, a TGA runs of 128 pixels in two bytes.
 constexpr std::uint64_t PixelsPerByte = 64;
 
+// As stb_image decides it, which skips fill bytes.
 bool is_jpeg(std::span<const unsigned char> bytes) {
-    return bytes.size() > 1 && bytes[0] == 0xff && bytes[1] == 0xd8;
+    const auto code =
+        std::find_if(bytes.begin(), bytes.end(), [](unsigned char byte) { return byte != 0xff; });
+    return code != bytes.begin() && code != bytes.end() && *code == 0xd8;
 }
 
 struct Size {
