@@ -33,8 +33,11 @@ namespace {
 // Upper bound of pixels per byte of the file: a BMP has a bit per pixel, a TGA runs of 128 pixels in two bytes.
 constexpr std::uint64_t PixelsPerByte = 64;
 
+// As stb_image decides it, which skips fill bytes.
 bool is_jpeg(std::span<const unsigned char> bytes) {
-    return bytes.size() > 1 && bytes[0] == 0xff && bytes[1] == 0xd8;
+    const auto code =
+        std::find_if(bytes.begin(), bytes.end(), [](unsigned char byte) { return byte != 0xff; });
+    return code != bytes.begin() && code != bytes.end() && *code == 0xd8;
 }
 
 struct Size {
@@ -47,6 +50,9 @@ struct Size {
 Expected<Size> checked_size(std::span<const unsigned char> bytes) {
     if (bytes.empty() || bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
         return failure(ErrorCode::InvalidInput, "the image has no bytes or more than 2 GiB");
+    }
+    if (is_jpeg(bytes)) {  // before stb_image reads its tables
+        if (const auto checked = check_jpeg(bytes); !checked) return tl::unexpected<Error>(checked.error());
     }
     Size size;
     int components = 0;
@@ -64,9 +70,7 @@ Expected<Size> checked_size(std::span<const unsigned char> bytes) {
                                                     " by " + std::to_string(MaxImagePixels / MaxImageEdge) +
                                                     " that are read");
     }
-    if (is_jpeg(bytes)) {
-        if (const auto checked = check_jpeg(bytes); !checked) return tl::unexpected<Error>(checked.error());
-    } else if (size.pixels() / PixelsPerByte > bytes.size()) {
+    if (!is_jpeg(bytes) && size.pixels() / PixelsPerByte > bytes.size()) {
         return failure(ErrorCode::InvalidInput,
                        claim + "but has only " + std::to_string(bytes.size()) + " bytes: save it again");
     }

@@ -9,12 +9,19 @@
 namespace tessera::import {
 namespace {
 
-enum JpegMarker : unsigned char { Restart0 = 0xd0, Restart7 = 0xd7, EndOfImage = 0xd9, StartOfScan = 0xda };
+enum JpegMarker : unsigned char {
+    HuffmanTables = 0xc4,
+    Restart0 = 0xd0,
+    Restart7 = 0xd7,
+    EndOfImage = 0xd9,
+    StartOfScan = 0xda
+};
 
 struct JpegFrame {
     std::uint64_t width = 0, height = 0;
     std::uint64_t least_bits = 0;
     std::uint64_t scans = 0;
+    std::uint64_t most_codes = 0;  // of a Huffman table
 };
 
 bool starts_frame(unsigned char marker) {
@@ -52,6 +59,20 @@ void read_frame(std::span<const unsigned char> segment, unsigned char marker, Jp
     }
 }
 
+// The tables of a segment, as stb_image goes through them: one may extend beyond the segment, which is an error only
+// afterwards.
+void read_tables(std::span<const unsigned char> rest, std::size_t length, JpegFrame& frame) {
+    constexpr std::size_t Lengths = 16;
+    while (length > 0 && rest.size() > Lengths) {
+        std::size_t codes = 0;
+        for (std::size_t i = 1; i <= Lengths; ++i) codes += rest[i];
+        frame.most_codes = std::max<std::uint64_t>(frame.most_codes, codes);
+        const std::size_t size = 1 + Lengths + codes;
+        length -= std::min(length, size);
+        rest = rest.subspan(std::min(rest.size(), size));
+    }
+}
+
 // Position of the next marker's code from `at`; the size of the bytes if there is none. Within a scan, 0 and the codes
 // of restarts belong to the data.
 enum class Within { Headers, Scan };
@@ -76,6 +97,7 @@ JpegFrame read_frame(std::span<const unsigned char> bytes) {
             if (length < 2 || length > bytes.size() - at) break;
             if (starts_frame(marker) && frame.width == 0)  // stb_image uses the first one
                 read_frame(bytes.subspan(at + 2, length - 2), marker, frame);
+            if (marker == HuffmanTables) read_tables(bytes.subspan(at + 2), length - 2, frame);
             if (marker == StartOfScan) {
                 ++frame.scans;
                 within = Within::Scan;
@@ -100,6 +122,11 @@ Expected<void> check_jpeg(std::span<const unsigned char> bytes) {
     if (frame.least_bits / 8 > bytes.size())
         return failure(ErrorCode::InvalidInput,
                        claim + "but has only " + std::to_string(bytes.size()) + " bytes: save it again");
+    // stb_image 2.27 writes beyond its array of 256.
+    if (frame.most_codes > 256)
+        return failure(ErrorCode::InvalidInput, "the image has a Huffman table of " +
+                                                    std::to_string(frame.most_codes) +
+                                                    " codes, more than 256: save it again");
     if (frame.scans > MaxJpegScans || frame.scans * pixels > MaxJpegScanPixels)
         return failure(ErrorCode::InvalidInput,
                        claim + "in " + std::to_string(frame.scans) +

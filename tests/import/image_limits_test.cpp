@@ -198,6 +198,14 @@ TEST(ImageLimits, AJpegCannotClaimMoreThanItsBytesHold) {
     EXPECT_THAT(refusal_of(jpeg(16384, 8192, 17, 300'000)), testing::HasSubstr("17 scans"));
     EXPECT_THAT(refusal_of(jpeg(8, 8, 501, 0)), testing::HasSubstr("501 scans"));
     EXPECT_EQ(refusal_of(jpeg(8, 8, 500, 0)), "");
+    std::string tables("\xff\xd8\xff\xc4\0\x15\0", 7);
+    tables += std::string(14, '\0') + "\xff\2" + std::string(257, '\1');
+    tables += jpeg(8, 8, 1, 0).substr(2);
+    for (const std::string& bytes : {tables, "\xff" + tables}) {  // the second with a fill byte
+        const auto image = decode_image({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()});
+        ASSERT_FALSE(image);
+        EXPECT_THAT(image.error().what(), testing::HasSubstr("257 codes"));
+    }
     const std::string large = jpeg(16384, 8192, 0, 0), small = jpeg(8, 8, 1, 0);
     EXPECT_THAT(refusal_of(large.substr(0, large.size() - 2) + small.substr(2)),
                 testing::HasSubstr("has only"));
