@@ -61,7 +61,8 @@ std::optional<int> parse_options(int argc, const char* const* argv, MasterOption
     if (!(options.checkpoint_seconds >= 0.1 && options.checkpoint_seconds <= 3600.0)) {
         return usage("--checkpoint must be between 0.1 and 3600 seconds");
     }
-    if (options.io_threads < 1 || options.io_threads > 64) return usage("--io-threads must be between 1 and 64");
+    if (options.io_threads < 1 || options.io_threads > 64)
+        return usage("--io-threads must be between 1 and 64");
     if (options.memory_mib != 0 && options.memory_mib < 64) return usage("--memory must be at least 64 MiB");
     if (!(options.orphan_seconds >= 0.0 && options.orphan_seconds <= 1e6))
         return usage("--orphan must be between 0 and 1000000 seconds");

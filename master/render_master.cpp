@@ -96,6 +96,8 @@ void RenderMaster::step(TimePoint now, std::stop_token stop) {
     const TimePoint deadline = intake_.empty() ? next_wake(now) : now;
     net::Received received = channel_->receive(deadline);
     const TimePoint begun = clock_.now();
+    // The whole process stood still, and woke later than it wanted to.
+    forgive_silence(begun - std::max(deadline, now_before_), begun);
     const bool heard_all = take_in(std::move(received));
     serve_messages(begun, stop);
     if (stop.stop_requested()) return;
@@ -111,13 +113,12 @@ void RenderMaster::step(TimePoint now, std::stop_token stop) {
     guard_.run("acknowledging film", [&] { dispatcher_.send_film_taken(); });
     guard_.run("sending heartbeats", [&] { heartbeats(now); });
     guard_.run("sending", [&] { outbox_.flush(); });
-    guard_.run("dropping lost peers", [&] { drop_lost_peers(now); });
-    limiter_.tick();
     const TimePoint end = clock_.now();
-    // Also when the whole process stood still, and woke later than it wanted to.
-    forgive_silence(end - begun + std::max(Duration::zero(), begun - std::max(deadline, now_before_)), end);
     monitor_.stepped(end - begun);
     now_before_ = end;
+    forgive_silence(end - begun, end);
+    if (heard_all && intake_.empty()) guard_.run("dropping lost peers", [&] { drop_lost_peers(end); });
+    limiter_.tick();
     if (heard_all) guard_.run("removing silent peers", [&] { remove_timed_out_peers(end); });
 }
 
@@ -167,6 +168,8 @@ void RenderMaster::serve_messages(TimePoint begun, const std::stop_token& stop) 
 // What peers sent meanwhile has not been read yet: they do not count as silent.
 void RenderMaster::forgive_silence(Duration time, TimePoint now) {
     if (time < settings_.liveness.interval / 4) return;
+    if (time >= settings_.liveness.interval * settings_.liveness.missed)
+        broken_until_ = now + settings_.liveness.max_backoff;
     for (auto& [id, node] : nodes_.all()) node.liveness.was_deaf(time, now);
     for (auto& [id, session] : sessions_.all()) session.liveness.was_deaf(time, now);
 }
@@ -184,6 +187,7 @@ TimePoint RenderMaster::next_wake(TimePoint now) const {
     TimePoint next = now + settings_.liveness.interval / 4;
     next = std::min(next, scene_.next_event(now));
     if (outbox_.waiting()) next = std::min(next, now + std::chrono::milliseconds(1));
+    if (!lost_.empty()) next = std::min(next, now + std::chrono::milliseconds(10));
     return next;
 }
 

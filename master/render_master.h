@@ -31,7 +31,8 @@ struct MasterSettings {
     std::filesystem::path session_folder;  // on disk; empty = in memory alone
     Duration checkpoint_interval = std::chrono::seconds(10);
     wire::BlobLimits blob_limits;
-    std::uint64_t memory_limit = 0;  // bytes of films, blobs and outboxes; 0: three quarters of the machine's memory
+    std::uint64_t memory_limit =
+        0;  // bytes of films, blobs and outboxes; 0: three quarters of the machine's memory
     Duration collect_interval = std::chrono::seconds(10);  // of unused blobs; zero: never, for a shared store
     double verified_share = 0.0;  // of the film of nodes, 0 to 1: see render/verifier.h
     std::size_t max_sessions = 256, max_nodes = 1024;
@@ -95,6 +96,10 @@ class RenderMaster {
     EventSink events_;
     TimePoint started_;
     TimePoint now_before_{};  // the end of the last step
+    // Peers whose connections were broken at the end of the step before. What they sent last, film and a goodbye, has
+    // been read by now.
+    std::vector<std::pair<net::Link, net::PeerId>> lost_;
+    TimePoint broken_until_{};  // after a stall: peers whose connections are broken may be coming back
 
     LoopMonitor monitor_;
     Guard guard_;

@@ -163,7 +163,8 @@ void RenderMaster::remove_timed_out_peers(TimePoint now) {
 }
 
 void RenderMaster::drop_lost_peers(TimePoint now) {
-    for (const auto& [link, peer] : outbox_.take_lost()) {
+    for (const auto& [link, peer] : std::exchange(lost_, outbox_.take_lost())) {
+        if (now < broken_until_) continue;  // they gave this master up, not the other way round
         const bool is_control = link == net::Link::Control;
         if (NodeRecord* node = is_control ? nodes_.by_control(peer) : nodes_.by_bulk(peer)) {
             remove_node(node->id, "its connection broke", now);

@@ -258,7 +258,8 @@ std::string SceneSession::open_view(const SessionRecord& session, std::uint64_t 
     if (std::string problem = viewer_problem(session, number, wanted); !problem.empty()) return problem;
     view::View completed = wanted.view;
     complete(completed);
-    if (std::string problem = memory_problem(film_bytes(completed), "the film of this view"); !problem.empty())
+    if (std::string problem = memory_problem(film_bytes(completed), "the film of this view");
+        !problem.empty())
         return problem;
     // Earlier edits are visible in the view, and the render origin follows the camera while it is the only one.
     publish_if_due(now);

@@ -29,7 +29,7 @@ struct MasterServices {
     RenderServices render;
     JobStore& jobs;
     EventSink events;
-    Duration collect_interval;  // of unused blobs; see blob_collector.h
+    Duration collect_interval;       // of unused blobs; see blob_collector.h
     std::uint64_t memory_limit = 0;  // 0: three quarters of the machine's memory
 };
 

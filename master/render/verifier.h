@@ -24,8 +24,8 @@ struct VerifierSettings {
     Duration patience = std::chrono::seconds(60);  // for a node that could verify it
 };
 
-// Has film rendered again by other nodes of the same kind and compares the bits. If two nodes differ, a third one tells
-// which of them is wrong. A verification is dealt as a unit of a view of its own (view_of()): its film is compared and
+// Has film rendered again by other nodes of the same kind and compares the bits. If two nodes differ, a third one
+// decides which of them is wrong. A verification is dealt as a unit of a view of its own (view_of()): its film is compared and
 // never merged. Pure.
 class Verifier {
   public:

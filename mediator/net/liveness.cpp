@@ -38,7 +38,9 @@ Duration Liveness::next_backoff() {
 }
 
 void Liveness::was_deaf(Duration time, TimePoint now) {
-    last_heard_ = std::min(now, last_heard_ + time);
+    last_heard_ = std::max(last_heard_, std::min(now, last_heard_ + time));
+    if (time >= settings_.interval * settings_.missed)
+        last_heard_ = std::max(last_heard_, now + settings_.max_backoff);
 }
 
 void Liveness::restarted(TimePoint now) {

@@ -23,7 +23,8 @@ class Liveness {
 
     // After a timeout: doubles from min_backoff to max_backoff until on_message() resets it.
     Duration next_backoff();
-    // This process did not listen for that long: the peer's silence counts less.
+    // This process did not listen for that long: the peer's silence counts less. If peers have given it up meanwhile,
+    // they are still in their back-off, and are given the time to come back.
     void was_deaf(Duration time, TimePoint now);
     void restarted(TimePoint now);  // sockets are new; silence counts from here
 

@@ -129,18 +129,18 @@ struct ClusterStatus {
     std::uint64_t verified_units = 0;  // rendered again by another node, with the same bits
     static constexpr auto describe(auto row) {
         using Self = ClusterStatus;
-        return std::tuple(
-            row(1, "software", &Self::software), row(2, "version", &Self::version),
-            row(3, "uptime_seconds", &Self::uptime_seconds), row(4, "blobs", &Self::blobs),
-            row(5, "blob_bytes", &Self::blob_bytes), row(6, "sessions", &Self::sessions),
-            row(7, "queued", &Self::queued), row(8, "dropped_messages", &Self::dropped_messages),
-            row(9, "units", &Self::units), row(10, "wire_bytes", &Self::wire_bytes),
-            row(11, "nodes", &Self::nodes), row(12, "scene", &Self::scene),
-            row(13, "resyncs", &Self::resyncs), row(14, "display", &Self::display),
-            row(15, "contradictions", &Self::contradictions),
-            row(16, "caught_exceptions", &Self::caught_exceptions),
-            row(17, "refused_handshakes", &Self::refused_handshakes), row(18, "loop", &Self::loop),
-            row(19, "verified_units", &Self::verified_units));
+        return std::tuple(row(1, "software", &Self::software), row(2, "version", &Self::version),
+                          row(3, "uptime_seconds", &Self::uptime_seconds), row(4, "blobs", &Self::blobs),
+                          row(5, "blob_bytes", &Self::blob_bytes), row(6, "sessions", &Self::sessions),
+                          row(7, "queued", &Self::queued),
+                          row(8, "dropped_messages", &Self::dropped_messages), row(9, "units", &Self::units),
+                          row(10, "wire_bytes", &Self::wire_bytes), row(11, "nodes", &Self::nodes),
+                          row(12, "scene", &Self::scene), row(13, "resyncs", &Self::resyncs),
+                          row(14, "display", &Self::display),
+                          row(15, "contradictions", &Self::contradictions),
+                          row(16, "caught_exceptions", &Self::caught_exceptions),
+                          row(17, "refused_handshakes", &Self::refused_handshakes),
+                          row(18, "loop", &Self::loop), row(19, "verified_units", &Self::verified_units));
     }
 };
 

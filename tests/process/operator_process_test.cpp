@@ -117,5 +117,29 @@ TEST(Operators, ANodeThatStandsStillForTenSecondsChangesNothing) {
         << units.dump();
 }
 
+TEST(Operators, WhatDoesNotFitIntoTheMemoryOfTheMasterIsRefused) {
+    RealCluster cluster({"--heartbeat", "0.25", "--memory", "64"}, RealCluster::Session::None);
+    ChildProcess node = cluster.start_node("a", {"--backend", "null"});
+    ChildProcess large =
+        cluster.start_render("large", scene_file("still.glb"), {"--size", "2048x2048", "--spp", "1"});
+    EXPECT_NE(large.wait(1min).value_or(0), 0);
+    EXPECT_NE(large.err().find("--memory"), std::string::npos) << large.err();
+    const json small = cluster.render("small", scene_file("still.glb"), {"--size", "64x64", "--spp", "1"});
+    EXPECT_EQ(small["spp"], 1);
+}
+
+TEST(Operators, AStoppedMasterRemovesNoPeerWhenItGoesOn) {
+    RealCluster cluster;
+    ChildProcess node = cluster.start_node("a", NullNode);
+    ASSERT_TRUE(cluster.wait_for([](const json& status) { return status["nodes"].size() == 1; }));
+    cluster.master().signal(SIGSTOP);
+    std::this_thread::sleep_for(5s);
+    cluster.master().signal(SIGCONT);
+    ASSERT_TRUE(cluster.wait_for([](const json& status) { return status["nodes"].size() == 1; }));
+    std::this_thread::sleep_for(1s);
+    const std::string log = cluster.master().err();
+    EXPECT_EQ(log.find("is gone"), std::string::npos) << log;
+}
+
 }  // namespace
 }  // namespace tessera::test

@@ -50,7 +50,7 @@ TEST_F(VerifierTest, AnotherNodeThatAgreesSettlesIt) {
     EXPECT_FALSE(verifier.uses(dealt->unit.view));
 }
 
-TEST_F(VerifierTest, AThirdNodeTellsWhichOfTwoIsWrong) {
+TEST_F(VerifierTest, AThirdNodeDecidesWhichOfTwoIsWrong) {
     for (const std::uint8_t third : {7, 8, 9}) {
         add(1, 7);
         EXPECT_EQ(answer(2, 8).outcome, Verifier::Outcome::Differs);
@@ -74,7 +74,7 @@ TEST_F(VerifierTest, WhatANodeDoesNotAnswerGoesToAnother) {
     EXPECT_EQ(answer(3, 7).outcome, Verifier::Outcome::Agreed);
     add(1, 7);
     verifier.drop_old(TimePoint{} + 11s);
-    EXPECT_FALSE(deal(2)) << "nobody took it in time";
+    EXPECT_FALSE(deal(2)) << "no node took it in time";
 }
 
 TEST_F(VerifierTest, ANodeHasOneBlockOfATileAtATime) {
