@@ -115,6 +115,7 @@ void SceneSession::close(TimePoint now) {
     members_.clear();
     reads_.clear();
     if (auto cleared = authority_.clear()) publish(std::move(*cleared), now);
+    collector_.scene_closed();
     if (journal_) journal_->closed();
     scene_ = {};
 }
@@ -258,7 +259,8 @@ std::string SceneSession::open_view(const SessionRecord& session, std::uint64_t 
     if (std::string problem = viewer_problem(session, number, wanted); !problem.empty()) return problem;
     view::View completed = wanted.view;
     complete(completed);
-    if (std::string problem = memory_problem(film_bytes(completed), "the film of this view");
+    if (std::string problem = memory_problem(film_bytes(completed), "the film of this view",
+                                             views_.watched(session.id, number));
         !problem.empty())
         return problem;
     // Earlier edits are visible in the view, and the render origin follows the camera while it is the only one.

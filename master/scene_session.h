@@ -51,8 +51,9 @@ class SceneSession {
     const SceneAuthority& authority() const { return authority_; }
     SceneDistributor& distributor() { return distributor_; }
     const SceneDistributor& distributor() const { return distributor_; }
-    // Why the master has no room for so many more bytes of `what`; "" = it has.
-    std::string memory_problem(std::uint64_t bytes, const std::string& what) const;
+    // Why the master has no room for so many more bytes of `what`; "" = it has. `replaced`: a view that goes for it.
+    std::string memory_problem(std::uint64_t bytes, const std::string& what,
+                               std::optional<ViewId> replaced = std::nullopt) const;
     BlobCollector& collector() { return collector_; }
     Views& views() { return views_; }
     const Views& views() const { return views_; }

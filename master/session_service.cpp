@@ -93,6 +93,10 @@ void SessionService::refuse_edit(SessionRecord& session, std::uint64_t sequence,
 }
 
 void SessionService::want(SessionRecord& session, const scene::BlobRef& blob) {
+    if (session.fetcher.wants(blob.hash)) {  // counted already; an absent one is asked for again
+        (void)session.fetcher.want(blob);
+        return;
+    }
     std::uint64_t bytes = scene_.collector().held_bytes(session.user);
     for (const auto& [id, other] : sessions_.all()) {
         if (other.user == session.user) bytes += other.fetcher.wanted_bytes();

@@ -16,8 +16,9 @@ namespace tessera::master {
 // link. One thread.
 class Intake {
   public:
-    static constexpr std::size_t MaxMessages = 4096,
-                                 MaxBytes = std::size_t{64} << 20;  // that may wait, per key
+    static constexpr std::size_t MaxMessages = 16384,
+                                 MaxBytes = std::size_t{64}
+                                            << 20;  // that may wait, per key: a thousand nodes may share one
 
     // Takes it. False: too many messages of its key wait; the message is left as it is.
     bool put(net::Message& message);

@@ -40,22 +40,30 @@ std::string escaped(const std::string& text) {
     return out;
 }
 
+bool EventLimiter::passes(Recent& recent, int limit, const std::string& beginning, const Event& event,
+                          TimePoint now) {
+    if (now - recent.since >= std::chrono::seconds(1)) {
+        if (recent.left_out > 0) report(beginning, recent);
+        recent = {.since = now, .passed = 0, .left_out = 0, .severity = event.severity};
+    }
+    if (recent.passed >= limit) {
+        ++recent.left_out;
+        return false;
+    }
+    ++recent.passed;
+    return true;
+}
+
 void EventLimiter::operator()(const Event& event) {
     const std::string beginning = event.text.substr(0, BeginningLength);
     const TimePoint now = clock_.now();
     {
         const std::scoped_lock lock(mutex_);
         if (recent_.size() >= MaxBeginnings && !recent_.contains(beginning)) recent_.clear();
-        Recent& recent = recent_[beginning];
-        if (now - recent.since >= std::chrono::seconds(1)) {
-            if (recent.left_out > 0) report(beginning, recent);
-            recent = {.since = now, .passed = 0, .left_out = 0, .severity = event.severity};
-        }
-        if (recent.passed >= PerSecond) {
-            ++recent.left_out;
+        // In this order: a flood of one kind leaves room for others.
+        if (!passes(recent_[beginning], PerSecond, beginning, event, now) ||
+            !passes(all_, AllPerSecond, "", event, now))
             return;
-        }
-        ++recent.passed;
     }
     sink_({event.severity, escaped(event.text)});
 }
@@ -63,6 +71,10 @@ void EventLimiter::operator()(const Event& event) {
 void EventLimiter::tick() {
     const TimePoint now = clock_.now();
     const std::scoped_lock lock(mutex_);
+    if (all_.left_out > 0 && now - all_.since >= std::chrono::seconds(1)) {
+        report("", all_);
+        all_ = {};
+    }
     std::erase_if(recent_, [&](const auto& entry) {
         if (now - entry.second.since < std::chrono::seconds(1)) return false;
         if (entry.second.left_out > 0) report(entry.first, entry.second);
@@ -71,8 +83,8 @@ void EventLimiter::tick() {
 }
 
 void EventLimiter::report(const std::string& beginning, const Recent& recent) {
-    sink_({recent.severity, std::to_string(recent.left_out) + " more messages like '" + escaped(beginning) +
-                                "...' were left out"});
+    const std::string alike = beginning.empty() ? "" : " like '" + escaped(beginning) + "...'";
+    sink_({recent.severity, std::to_string(recent.left_out) + " more messages" + alike + " were left out"});
 }
 
 }  // namespace tessera::master

@@ -5,7 +5,7 @@
 namespace tessera::master {
 
 void BlobCollector::received(const std::string& user, const scene::BlobRef& blob) {
-    if (senders_.try_emplace(blob.hash, user).second) held_[user] += blob.byte_size;
+    if (senders_.try_emplace(blob.hash, Sent{user, blob.byte_size}).second) held_[user] += blob.byte_size;
 }
 
 std::uint64_t BlobCollector::held_bytes(const std::string& user) const {
@@ -16,10 +16,22 @@ std::uint64_t BlobCollector::held_bytes(const std::string& user) const {
 void BlobCollector::forget(const scene::BlobRef& blob) {
     const auto sender = senders_.find(blob.hash);
     if (sender == senders_.end()) return;
-    const auto held = held_.find(sender->second);
-    held->second -= blob.byte_size;
-    if (held->second == 0) held_.erase(held);
+    release(sender->second);
     senders_.erase(sender);
+}
+
+void BlobCollector::release(const Sent& sent) {
+    const auto held = held_.find(sent.user);
+    held->second -= sent.bytes;
+    if (held->second == 0) held_.erase(held);
+}
+
+void BlobCollector::scene_closed() {
+    std::erase_if(senders_, [&](const auto& entry) {
+        if (blobs_->find(entry.first)) return false;
+        release(entry.second);
+        return true;
+    });
 }
 
 void BlobCollector::tick(const SceneAuthority& authority, TimePoint now) {

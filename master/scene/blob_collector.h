@@ -23,18 +23,24 @@ class BlobCollector {
 
     void received(const std::string& user, const scene::BlobRef& blob);  // by a client of that key
     std::uint64_t held_bytes(const std::string& user) const;
+    void scene_closed();  // the store has dropped what only the scene used
     void tick(const SceneAuthority& authority, TimePoint now);
 
   private:
     void collect(const AuthorityState& state, std::uint64_t mark);
+    struct Sent {
+        std::string user;
+        std::uint64_t bytes = 0;
+    };
     void forget(const scene::BlobRef& blob);
+    void release(const Sent& sent);
 
     std::shared_ptr<scene::BlobStore> blobs_;
     Duration interval_;
     TimePoint last_{};
     std::uint64_t transactions_ = 0;  // at the last time
     Version version_;
-    std::map<Hash256, std::string> senders_;
+    std::map<Hash256, Sent> senders_;
     std::map<std::string, std::uint64_t> held_;
 
     std::mutex mutex_;  // protects the members below

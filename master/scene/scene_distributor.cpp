@@ -9,12 +9,8 @@ void SceneDistributor::published(NodeTable& nodes, const std::shared_ptr<const s
     // A node that was not sent the version before awaits a snapshot, or will get one by repair().
     const auto follows = [&](const NodeRecord& node) { return node.sent == changes->from; };
     if (changes->entries.size() > SceneEncoder::ShortList) {
-        const std::uint64_t job = encoder_.encode(changes->from, changes->to, [changes] { return *changes; });
         for (auto& [id, node] : nodes.all()) {
-            if (!follows(node)) continue;
-            node.awaits = job;
-            node.sent = {};
-            node.sent_at = now;
+            if (follows(node)) await_changes(node, changes, now);
         }
         return;
     }
@@ -63,13 +59,29 @@ void SceneDistributor::send_blob(NodeRecord& node, Version from, Version to, con
     node.sent_at = now;
 }
 
+// The list is encoded once for all nodes that await the same.
+void SceneDistributor::await_changes(NodeRecord& node,
+                                     const std::shared_ptr<const scene::ChangeList>& changes, TimePoint now) {
+    if (changes_job_ == 0 || changes_from_ != changes->from || changes_to_ != changes->to) {
+        changes_job_ = encoder_.encode(changes->from, changes->to, [changes] { return *changes; });
+        changes_from_ = changes->from;
+        changes_to_ = changes->to;
+    }
+    node.awaits = changes_job_;
+    node.sent = {};
+    node.sent_at = now;
+}
+
 // Versions were published while the one that it was sent was being encoded.
 void SceneDistributor::catch_up(NodeRecord& node, TimePoint now) {
     if (node.sent == authority_.version()) return;
     const auto changes = authority_.since(node.sent);
-    if (!changes || changes->entries.size() > SceneEncoder::ShortList) return send_snapshot(node, now);
+    if (!changes) return send_snapshot(node, now);
+    if (changes->entries.size() > SceneEncoder::ShortList)
+        return await_changes(node, std::make_shared<const scene::ChangeList>(*changes), now);
     const net::Bytes message = wire::encode(wire::ControlMessage(wire::Changes{*changes}));
-    if (!wire::fits_control(message)) return send_snapshot(node, now);
+    if (!wire::fits_control(message))
+        return await_changes(node, std::make_shared<const scene::ChangeList>(*changes), now);
     outbox_.control(node.control, net::Bytes(message));
     node.sent = changes->to;
     node.hash_mismatches = 0;
@@ -78,6 +90,7 @@ void SceneDistributor::catch_up(NodeRecord& node, TimePoint now) {
 void SceneDistributor::take(const EncodedScene& made, NodeTable& nodes, TimePoint now) {
     const bool is_snapshot = made.job == snapshot_job_;
     if (is_snapshot) snapshot_job_ = 0;
+    if (made.job == changes_job_) changes_job_ = 0;
     const bool is_usable = made.blob && made.to.epoch == authority_.version().epoch;
     scene::BlobPtr blob;
     for (auto& [id, node] : nodes.all()) {

@@ -39,6 +39,8 @@ class SceneDistributor {
   private:
     void send_snapshot(NodeRecord& node, TimePoint now);
     void send_blob(NodeRecord& node, Version from, Version to, const scene::BlobPtr& blob, TimePoint now);
+    void await_changes(NodeRecord& node, const std::shared_ptr<const scene::ChangeList>& changes,
+                       TimePoint now);
     void catch_up(NodeRecord& node, TimePoint now);
 
     SceneAuthority& authority_;
@@ -50,6 +52,8 @@ class SceneDistributor {
     scene::BlobPtr snapshot_;         // kept alive here: the store may drop it
     std::uint64_t snapshot_job_ = 0;  // encodes a snapshot; 0 = none
     scene::BlobPtr long_changes_;
+    std::uint64_t changes_job_ = 0;  // encodes the changes from changes_from_ to changes_to_; 0 = none
+    Version changes_from_, changes_to_;
     std::uint64_t resyncs_ = 0;
 };
 

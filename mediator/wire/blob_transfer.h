@@ -39,6 +39,7 @@ class BlobFetcher {
     void forget_all();
     // Completed blobs are held until then: no edit refers to them yet.
     void release_completed() { completed_.clear(); }
+    bool wants(const Hash256& hash) const { return partial_.contains(hash); }
     bool idle() const { return partial_.empty(); }
     std::vector<Hash256> absent_blobs() const;
     std::uint64_t received_bytes() const { return received_bytes_; }

@@ -43,5 +43,18 @@ TEST(EventLimiterTest, AFloodLeavesOneLineASecondAndOthersPass) {
     EXPECT_EQ(lines.size(), EventLimiter::PerSecond + 3u);
 }
 
+// A peer may choose another name each time.
+TEST(EventLimiterTest, TextsThatAllBeginDifferentlyAreLimitedTogether) {
+    ManualClock clock;
+    std::vector<std::string> lines;
+    EventLimiter limiter(clock, [&](const Event& event) { lines.push_back(event.text); });
+    for (int i = 0; i < 5000; ++i)
+        limiter({wire::Severity::Warning, std::to_string(i) + " was refused: it is no node"});
+    EXPECT_EQ(lines.size(), std::size_t{EventLimiter::AllPerSecond});
+    clock.time += 2s;
+    limiter.tick();
+    EXPECT_EQ(lines.back(), "4800 more messages were left out");
+}
+
 }  // namespace
 }  // namespace tessera::master
