@@ -17,6 +17,12 @@ session::JobName named(const SessionRecord& session, session::JobName job) {
     return job;
 }
 
+// Views that no client named have names that are hard to type ("tessera render/4294967296").
+session::JobName job_name(const ViewState& view) {
+    const bool is_named = view.request.detached || view.name.find('/') == std::string::npos;
+    return {view.owner.user, is_named ? view.name : "lost-" + std::to_string(view.id.value)};
+}
+
 wire::SavedView without_film(const ViewState& view) {
     return {.name = view.name,
             .owner_user = view.owner.user,
@@ -64,9 +70,9 @@ void SceneSession::store_finished_jobs(TimePoint now) {
     for (Delivery::Ended& ended : views_.take_ended_jobs()) {
         const ViewState* view = views_.table().find(ended.view);
         if (view == nullptr || !views_.is_job(ended.view)) continue;  // its client is back
-        session::JobName job{view->owner.user, view->name};
+        session::JobName job = job_name(*view);
         const auto orphan_time = views_.orphan_time(*view, now);
-        // Names that clients did not choose repeat.
+        // The views of another scene may have had the same names.
         if (orphan_time) job.name = services_.jobs.unused_name(job);
         services_.events({wire::Severity::Info, "job '" + job.name + "' of " + job.user + " has ended: " +
                                                     std::string(enumerator_name(ended.summary.outcome))});
@@ -97,7 +103,7 @@ void SceneSession::store_finished_jobs(TimePoint now) {
 
 const ViewState* SceneSession::job_view(const session::JobName& job) const {
     for (const auto& [id, view] : views_.table().all()) {
-        if (views_.is_job(id) && view.owner.user == job.user && view.name == job.name) return &view;
+        if (views_.is_job(id) && job_name(view) == job) return &view;
     }
     return nullptr;
 }
@@ -110,7 +116,7 @@ void SceneSession::handle(SessionRecord& session, const wire::ReadJobs& request,
     for (const auto& [id, view] : views_.table().all()) {
         if (!views_.is_job(id) || !may_see(session, view.owner.user)) continue;
         const auto orphan_time = views_.orphan_time(view, now);
-        answer.jobs.push_back({.job = {view.owner.user, view.name},
+        answer.jobs.push_back({.job = job_name(view),
                                .scene = title(),
                                .progress = views_.progress(view),
                                .summary = {},
@@ -162,7 +168,7 @@ void SceneSession::handle(SessionRecord& session, const wire::CancelJob& request
     const bool was_kept = services_.jobs.remove(job);
     const ViewState* view = job_view(job);
     if (view == nullptr) return done(session, request.request, was_kept ? "" : no_such(job));
-    if (journal_) journal_->job_ended(job);
+    if (journal_) journal_->job_ended({view->owner.user, view->name});
     views_.release(view->id);
     done(session, request.request, {});
 }

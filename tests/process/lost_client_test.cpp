@@ -87,6 +87,7 @@ TEST_F(LostClients, AnotherProcessFetchesThePictureOfAKilledOne) {
     const json job = wait_for_end();
     EXPECT_EQ(job["outcome"], "complete");
     EXPECT_EQ(next.wait(1min).value_or(-1), 0) << "the cluster is free again: " << next.err();
+    EXPECT_EQ(job["name"].get<std::string>().rfind("lost-", 0), 0u) << "a name that one can type";
     const std::string name = job["name"], fetched = cluster->folder() / "fetched.exr";
     tessera({"fetch", name, "-o", fetched, "--remove"});
     cluster->render("again", scene_file("still.glb"), LongFrame);
