@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "mediator/scene/fields.h"
+#include "mediator/view/camera_scene.h"
 
 namespace tessera::view {
 namespace {
@@ -156,6 +157,31 @@ TEST_F(Followed, RecoversFromASingularTransform) {
     EXPECT_FALSE(camera.world_from_camera());
     EXPECT_FALSE(follow({matrix_of(A, glm::scale(glm::dmat4(1.0), glm::dvec3(0, 1, 0)))}));
     EXPECT_TRUE(follow({matrix_of(A, moved(5))}));
+}
+
+// What viewers read: as deep as a graph may be, with shared parts, and nothing else of it.
+TEST(CameraScene, HasTheCamerasAtTheirPlacesAndNothingElse) {
+    constexpr std::uint64_t Depth = 100'000, Eye = 2'000'000, Mesh = 2'000'001, Aside = 2'000'002;
+    std::vector<Entry> entries{Create{ObjectId{Eye}, Camera{.name = "eye"}},
+                               Create{ObjectId{Mesh}, Geometry{}},
+                               Create{ObjectId{Aside}, at(5, {ObjectId{Mesh}})}};
+    for (std::uint64_t i = 0; i < Depth; ++i) {
+        const ObjectId below{i + 1 < Depth ? 101 + i : Eye};
+        entries.emplace_back(Create{ObjectId{100 + i}, at(1, {ObjectId{Mesh}, below})});
+    }
+    entries.emplace_back(Create{ObjectId{50}, at(-3, {ObjectId{100 + Depth - 1}})});
+    Scene whole = scene_of(std::move(entries), {ObjectId{Aside}, ObjectId{100}, ObjectId{50}});
+    whole.set_version({7, 3});
+    const Scene cameras = camera_scene(whole);
+    EXPECT_EQ(cameras.version(), whole.version());
+    EXPECT_EQ(cameras.objects().size(), Depth + 3) << "the chain, its second parent, the camera and the root";
+    EXPECT_EQ(cameras.find(ObjectId{Mesh}), nullptr);
+    EXPECT_EQ(cameras.find(ObjectId{Aside}), nullptr);
+    const auto expected = placed_cameras(whole), seen = placed_cameras(cameras);
+    ASSERT_EQ(seen.size(), expected.size());
+    ASSERT_FALSE(seen.empty());
+    EXPECT_EQ(seen[0].world_from_camera, expected[0].world_from_camera);
+    EXPECT_EQ(camera_scene(Scene{}).objects().size(), 0u);
 }
 
 }  // namespace
