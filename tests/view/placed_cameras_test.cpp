@@ -161,22 +161,22 @@ TEST_F(Followed, RecoversFromASingularTransform) {
 
 // What viewers read: as deep as a graph may be, with shared parts, and nothing else of it.
 TEST(CameraScene, HasTheCamerasAtTheirPlacesAndNothingElse) {
-    constexpr std::uint64_t Depth = 100'000, Eye = 2'000'000, Mesh = 2'000'001, Aside = 2'000'002;
+    constexpr std::uint64_t Depth = 100'000, Eye = 2'000'000, Mesh = 2'000'001, Spare = 2'000'002;
     std::vector<Entry> entries{Create{ObjectId{Eye}, Camera{.name = "eye"}},
                                Create{ObjectId{Mesh}, Geometry{}},
-                               Create{ObjectId{Aside}, at(5, {ObjectId{Mesh}})}};
+                               Create{ObjectId{Spare}, at(5, {ObjectId{Mesh}})}};
     for (std::uint64_t i = 0; i < Depth; ++i) {
         const ObjectId below{i + 1 < Depth ? 101 + i : Eye};
         entries.emplace_back(Create{ObjectId{100 + i}, at(1, {ObjectId{Mesh}, below})});
     }
     entries.emplace_back(Create{ObjectId{50}, at(-3, {ObjectId{100 + Depth - 1}})});
-    Scene whole = scene_of(std::move(entries), {ObjectId{Aside}, ObjectId{100}, ObjectId{50}});
+    Scene whole = scene_of(std::move(entries), {ObjectId{Spare}, ObjectId{100}, ObjectId{50}});
     whole.set_version({7, 3});
     const Scene cameras = camera_scene(whole);
     EXPECT_EQ(cameras.version(), whole.version());
     EXPECT_EQ(cameras.objects().size(), Depth + 3) << "the chain, its second parent, the camera and the root";
     EXPECT_EQ(cameras.find(ObjectId{Mesh}), nullptr);
-    EXPECT_EQ(cameras.find(ObjectId{Aside}), nullptr);
+    EXPECT_EQ(cameras.find(ObjectId{Spare}), nullptr);
     const auto expected = placed_cameras(whole), seen = placed_cameras(cameras);
     ASSERT_EQ(seen.size(), expected.size());
     ASSERT_FALSE(seen.empty());
