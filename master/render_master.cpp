@@ -96,6 +96,7 @@ void RenderMaster::step(TimePoint now, std::stop_token stop) {
     const TimePoint deadline = intake_.empty() ? next_wake(now) : now;
     net::Received received = channel_->receive(deadline);
     const TimePoint begun = clock_.now();
+    const Duration cpu_before = LoopMonitor::thread_cpu_time();
     // The whole process stood still, and woke later than it wanted to.
     forgive_silence(begun - std::max(deadline, now_before_), begun);
     const bool heard_all = take_in(std::move(received));
@@ -105,6 +106,7 @@ void RenderMaster::step(TimePoint now, std::stop_token stop) {
     run_posted();
     for (RenderOutput& output : outputs_.take())
         guard_.run("taking the result of a thread", [&] { scene_.take(output, now); });
+    serve_held_messages(now);
     guard_.run("collecting overdue units", [&] { dispatcher_.collect_overdue(now); });
     guard_.run("serving clients", [&] { service_.tick(now); });
     guard_.run("the scene's tick", [&] { scene_.tick(now); });
@@ -114,7 +116,7 @@ void RenderMaster::step(TimePoint now, std::stop_token stop) {
     guard_.run("sending heartbeats", [&] { heartbeats(now); });
     guard_.run("sending", [&] { outbox_.flush(); });
     const TimePoint end = clock_.now();
-    monitor_.stepped(end - begun);
+    monitor_.stepped(end - begun, LoopMonitor::thread_cpu_time() - cpu_before);
     now_before_ = end;
     forgive_silence(end - begun, end);
     if (heard_all && intake_.empty()) guard_.run("dropping lost peers", [&] { drop_lost_peers(end); });
@@ -228,9 +230,42 @@ void RenderMaster::control(net::Message& message, TimePoint now) {
     if (SessionRecord* session = sessions_.by_control(message.peer);
         session && session->user == message.user) {
         session->liveness.on_message(now);
+        if (must_wait(*session, *decoded)) return hold(*session, message, std::move(*decoded));
         return from_client(*session, *decoded, message.bytes.size(), now);
     }
     if (!std::holds_alternative<wire::Goodbye>(*decoded)) outbox_.control(message.peer, wire::Unknown{});
+}
+
+bool RenderMaster::must_wait(const SessionRecord& session, const wire::ControlMessage& message) const {
+    if (session.held.empty()) return scene_.waits(session, message);
+    return !std::holds_alternative<wire::Heartbeat>(message);  // in order
+}
+
+void RenderMaster::hold(SessionRecord& session, const net::Message& message, wire::ControlMessage&& decoded) {
+    constexpr std::size_t MaxMessages = 1024, MaxBytes = std::size_t{16} << 20;
+    if (session.held.size() >= MaxMessages || session.held_bytes >= MaxBytes)
+        return drop(message, "too many messages of this client wait for an edit");
+    session.held_bytes += message.bytes.size();
+    session.held.push_back({std::move(decoded), message.bytes.size()});
+}
+
+void RenderMaster::serve_held_messages(TimePoint now) {
+    std::vector<SessionId> holding;
+    for (const auto& [id, session] : sessions_.all()) {
+        if (!session.held.empty()) holding.push_back(id);
+    }
+    for (const SessionId id : holding) {
+        // A message may end its session.
+        for (SessionRecord* session = sessions_.find(id);
+             session && !session->held.empty() && !scene_.waits(*session, session->held.front().message);
+             session = sessions_.find(id)) {
+            SessionRecord::HeldMessage held = std::move(session->held.front());
+            session->held.pop_front();
+            session->held_bytes -= held.byte_size;
+            guard_.run("a message that waited",
+                       [&] { from_client(*session, held.message, held.byte_size, now); });
+        }
+    }
 }
 
 void RenderMaster::bulk(net::Message& message, TimePoint now) {
@@ -300,7 +335,7 @@ void RenderMaster::welcome(net::PeerId peer, std::uint64_t number, std::uint64_t
     outbox_.control(
         peer, wire::Welcome{.peer_number = number,
                             .token = token,
-                            .epoch = scene_.authority().version().epoch,
+                            .epoch = scene_.published().version().epoch,
                             .heartbeat_interval = settings_.liveness.interval,
                             .missed_heartbeats = static_cast<std::uint32_t>(settings_.liveness.missed)});
 }
@@ -390,13 +425,13 @@ void RenderMaster::heartbeats(TimePoint now) {
         if (!node.liveness.heartbeat_due(now)) continue;
         node.liveness.sent_heartbeat(now);
         outbox_.control(node.control,
-                        heartbeat(now, node.state.sent_at, node.heartbeat_at, scene_.authority().version()));
+                        heartbeat(now, node.state.sent_at, node.heartbeat_at, scene_.published().version()));
     }
     for (auto& [id, session] : sessions_.all()) {
         if (!session.liveness.heartbeat_due(now)) continue;
         session.liveness.sent_heartbeat(now);
         outbox_.control(session.control, heartbeat(now, session.heartbeat_sent_at, session.heartbeat_at,
-                                                   scene_.authority().version()));
+                                                   scene_.published().version()));
     }
 }
 

@@ -67,6 +67,9 @@ class RenderMaster {
     void receive(net::Message&& message, TimePoint now);
     void control(net::Message& message, TimePoint now);
     void bulk(net::Message& message, TimePoint now);
+    bool must_wait(const SessionRecord& session, const wire::ControlMessage& message) const;
+    void hold(SessionRecord& session, const net::Message& message, wire::ControlMessage&& decoded);
+    void serve_held_messages(TimePoint now);
 
     void hello(const net::Message& message, wire::Hello hello, TimePoint now);
     void welcome(net::PeerId control, std::uint64_t number, std::uint64_t token);

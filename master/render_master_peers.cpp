@@ -55,7 +55,7 @@ void RenderMaster::from_client(SessionRecord& session, wire::ControlMessage& mes
     } else if (const auto* fetched = std::get_if<wire::FetchJob>(&message)) {
         scene_.handle(session, *fetched);
     } else if (const auto* cancelled = std::get_if<wire::CancelJob>(&message)) {
-        scene_.handle(session, *cancelled);
+        scene_.handle(session, *cancelled, now);
     } else if (const auto* asked = std::get_if<wire::StatusRequest>(&message)) {
         outbox_.control(session.control, status_page(asked->after, now));
     } else if (const auto* join = std::get_if<wire::JoinScene>(&message)) {
@@ -96,14 +96,14 @@ void RenderMaster::manage_node(const SessionRecord& session, const wire::ManageN
 }
 
 void RenderMaster::from_member(SessionRecord& session, wire::ControlMessage& message, TimePoint now) {
-    if (auto* view = std::get_if<wire::RequestView>(&message)) {
-        scene_.handle(session, std::move(*view), now);
+    if (const auto* view = std::get_if<wire::RequestView>(&message)) {
+        scene_.handle(session, *view, now);
     } else if (const auto* ended = std::get_if<wire::EndView>(&message)) {
         scene_.views().end(session.id, *ended, now);
     } else if (const auto* taken = std::get_if<wire::FrameTaken>(&message)) {
         scene_.views().taken(session.id, *taken);
     } else if (const auto* pick = std::get_if<wire::Pick>(&message)) {
-        scene_.views().pick(session.id, *pick, scene_.authority().version());
+        scene_.views().pick(session.id, *pick, scene_.published().version());
     } else if (const auto* read = std::get_if<wire::ReadScene>(&message)) {
         scene_.handle(session, *read);
     } else if (const auto* lock = std::get_if<wire::LockObjects>(&message)) {
@@ -191,7 +191,7 @@ net::Bytes RenderMaster::status_page(NodeId after, TimePoint now) const {
 
 session::ClusterStatus RenderMaster::status(TimePoint now) const {
     session::ClusterStatus reply{.software = settings_.software,
-                                 .version = scene_.authority().version(),
+                                 .version = scene_.published().version(),
                                  .uptime_seconds = seconds(now - started_),
                                  .blobs = blobs_->count(),
                                  .blob_bytes = blobs_->byte_size(),

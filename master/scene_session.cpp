@@ -10,7 +10,6 @@ namespace tessera::master {
 
 namespace {
 
-constexpr Duration VersionInterval = std::chrono::milliseconds(16);
 constexpr std::size_t MaxNameLength = 64;
 
 std::uint64_t three_quarters_of_memory() {
@@ -25,16 +24,18 @@ SceneSession::SceneSession(std::uint64_t epoch, const ViewSettings& settings, co
       owner_timeout_(settings.orphan_limit),
       memory_limit_(services.memory_limit != 0 ? services.memory_limit : three_quarters_of_memory()),
       authority_(epoch, services.blobs),
+      published_(authority_.published()),
       encoder_([&outputs = services.render.outputs](EncodedScene made) { outputs.put(std::move(made)); }),
-      distributor_(authority_, encoder_, *services.blobs, services.outbox, services.events),
-      reads_(authority_, encoder_, *services.blobs, services.sessions, services.outbox),
+      distributor_(published_, encoder_, *services.blobs, services.outbox, services.events),
+      reads_(published_, encoder_, *services.blobs, services.sessions, services.outbox),
       collector_(services.blobs, services.collect_interval),
       views_(settings, services.render, services.sessions, services.outbox, services.events,
              [this](ObjectId id) {
-                 const scene::Object* object = authority_.scene().find(id);
+                 const scene::Object* object = published_.scene().find(id);
                  return object ? scene::name(*object) : std::string();
              }),
-      display_(authority_, services.sessions, views_, services.outbox, services.events) {}
+      display_(published_, services.sessions, views_, services.outbox, services.events),
+      thread_([&outputs = services.render.outputs] { outputs.put(EditDone{}); }) {}
 
 std::string SceneSession::unique_name(const std::string& wanted) const {
     const auto taken = [&](const std::string& name) {
@@ -49,15 +50,14 @@ std::string SceneSession::unique_name(const std::string& wanted) const {
     }
 }
 
-void SceneSession::open(wire::RecordedTitle scene) {
-    if (journal_) journal_->opened(scene);
+void SceneSession::opened(wire::RecordedTitle scene) {
     open_ = true;
     scene_ = std::move(scene);
     owner_missing_since_.reset();
     views_.charge_from(services_.outbox.bytes);
     counts_ = {};
     traces_ = {};
-    published_transactions_ = built_transactions_ = authority_.transactions();
+    published_transactions_ = built_transactions_ = transactions_ = authority_.transactions();
     services_.events(
         {wire::Severity::Info, (is_exclusive() ? "scene '" : "live scene '") + title() + "' is open"});
 }
@@ -74,34 +74,61 @@ void SceneSession::join(SessionRecord& session, const wire::JoinScene& request, 
         throw Error(ErrorCode::Refused, "a member key of 0 is not valid: choose a random one");
     if (!may_edit && request.exclusive)
         throw Error(ErrorCode::Refused, "a viewer cannot open a scene: use an editor's key");
+    struct Joining {
+        std::optional<wire::RecordedTitle> opens;
+        IdRange ids;
+        std::string problem;
+    };
+    const auto joining = std::make_shared<Joining>();
     if (!open_) {
-        open({.title = request.title.empty() ? "untitled" : request.title,
-              .owner = request.exclusive ? std::optional(wire::RecordedOwner{session.user, request.key})
-                                         : std::nullopt});
+        joining->opens = {.title = request.title.empty() ? "untitled" : request.title,
+                          .owner = request.exclusive
+                                       ? std::optional(wire::RecordedOwner{session.user, request.key})
+                                       : std::nullopt};
     }
     owner_missing_since_.reset();
     // Viewers need neither ids nor a journal record.
-    const IdRange ids = may_edit ? authority_.join(session.id, session.user, request.key) : IdRange{};
-    if (may_edit && ids.count == 0) {
-        throw Error(
-            ErrorCode::Refused,
-            "all object ids are allocated, or the session folder cannot be written: see the master's log");
-    }
-    if (!members_.contains(session.id)) {
-        Member& member = members_[session.id];
+    const auto work = [this, joining, may_edit, id = session.id, user = session.user,
+                       key = request.key](SceneAuthority& authority) {
+        try {
+            if (joining->opens && journal_) journal_->opened(*joining->opens);
+            if (may_edit) joining->ids = authority.join(id, user, key);
+        } catch (const Error& error) {
+            joining->problem = error.what();
+        }
+    };
+    const auto then = [this, joining, may_edit, id = session.id, request](TimePoint at) {
+        if (joining->opens && joining->problem.empty()) opened(std::move(*joining->opens));
+        const SessionRecord* joined_session = services_.sessions.find(id);
+        if (joined_session == nullptr) return authority_.forget(id);
+        if (may_edit && joining->problem.empty() && joining->ids.count == 0) {
+            joining->problem =
+                "all object ids are allocated, or the session folder cannot be written: see the master's log";
+        }
+        if (joining->problem.empty()) return joined(id, request, joining->ids, at);
+        services_.outbox.control(joined_session->control, wire::Refusal{joining->problem});
+    };
+    requester_ = session.id;
+    run({.writes = may_edit || joining->opens}, work, then, now);
+}
+
+void SceneSession::joined(SessionId id, const wire::JoinScene& request, const IdRange& ids, TimePoint now) {
+    const SessionRecord& session = *services_.sessions.find(id);
+    if (!members_.contains(id)) {
+        Member& member = members_[id];
         member.name = unique_name(request.name);
         member.key = request.key;
         services_.events(
             {wire::Severity::Info, member.name + " (" + session.user + ") joined '" + title() + "'"});
     }
+    const std::uint64_t last_sequence = authority_.last_sequence(id);
     publish_if_due(now);
-    services_.outbox.control(session.control,
-                             wire::SceneJoined{.version = authority_.version(),
-                                               .first_id = ids.first,
-                                               .id_count = ids.count,
-                                               .last_sequence = authority_.last_sequence(session.id),
-                                               .title = title(),
-                                               .name = members_.at(session.id).name});
+    services_.outbox.control(session.control, wire::SceneJoined{.version = published_.version(),
+                                                                .first_id = ids.first,
+                                                                .id_count = ids.count,
+                                                                .last_sequence = last_sequence,
+                                                                .title = title(),
+                                                                .name = members_.at(id).name});
 }
 
 void SceneSession::close(TimePoint now) {
@@ -114,10 +141,17 @@ void SceneSession::close(TimePoint now) {
     for (const auto& [id, member] : members_) authority_.forget(id);
     members_.clear();
     reads_.clear();
-    if (auto cleared = authority_.clear()) publish(std::move(*cleared), now);
-    collector_.scene_closed();
-    if (journal_) journal_->closed();
     scene_ = {};
+    const auto cleared = std::make_shared<std::optional<scene::ChangeList>>();
+    run(
+        {published_.scene().objects().size() + authority_.unpublished_objects(), true},
+        [cleared](SceneAuthority& authority) { *cleared = authority.clear(); },
+        [this, cleared](TimePoint at) {
+            if (*cleared) publish(std::move(**cleared), at);
+            collector_.scene_closed();
+            if (journal_) journal_->closed();
+        },
+        now);
 }
 
 void SceneSession::left(SessionId session, Views::DisconnectReason reason, TimePoint now) {
@@ -126,8 +160,7 @@ void SceneSession::left(SessionId session, Views::DisconnectReason reason, TimeP
     services_.events({wire::Severity::Info, member->second.name + " left '" + title() + "'"});
     views_.session_left(session, reason, now);
     display_.left(session, now);
-    authority_.release_all(session);
-    authority_.forget(session);
+    forget_editor(session);
     members_.erase(member);
     reads_.left(session);
     if (reason == Views::DisconnectReason::Timeout && members_.empty()) owner_missing_since_ = now;
@@ -137,23 +170,9 @@ void SceneSession::left(SessionId session, Views::DisconnectReason reason, TimeP
 // An exclusive scene is closed when its owner leaves, unless jobs continue. One that was recovered, or whose owner was
 // lost, waits for its owner for a while, but not once it only keeps others waiting.
 void SceneSession::close_when_left(TimePoint now) {
-    if (!open_ || !is_exclusive() || !members_.empty() || views_.has_jobs()) return;
+    if (!open_ || is_editing() || !is_exclusive() || !members_.empty() || views_.has_jobs()) return;
     const bool waits = owner_missing_since_ && now - *owner_missing_since_ <= owner_timeout_;
     if (!waits || !services_.sessions.queue().empty()) close(now);
-}
-
-void SceneSession::edited(const SessionRecord& session, const scene::Edit& edit, const EditAnswer& answer,
-                          std::uint64_t message_bytes, TimePoint now) {
-    ++counts_.edits;
-    counts_.edit_bytes += message_bytes;
-    if (!answer.accepted || answer.transaction == 0) return;
-    traces_.submitted({.transaction = answer.transaction,
-                       .name = name(session.id),
-                       .bytes = message_bytes,
-                       .submitted_at = edit.submitted_at,
-                       .clock = session.clock.offset(now),
-                       .received = now,
-                       .version = answer.version});
 }
 
 void SceneSession::node_built(const NodeRecord& node, const wire::VersionReport& report, TimePoint now) {
@@ -161,34 +180,6 @@ void SceneSession::node_built(const NodeRecord& node, const wire::VersionReport&
     built_transactions_ = published_transactions_;  // the report is about the published version
     traces_.node_built(node.id, node.hello.name, report.version, report.received_at, report.built_at,
                        node.clock.offset(now));
-}
-
-void SceneSession::node_refused(NodeRecord& node, const wire::SceneRefused& refusal, TimePoint now) {
-    distributor_.refused(node, refusal);
-    if (node.refused != authority_.version()) return;
-    if (!open_ || is_exclusive()) return;
-    bool any = false;
-    for (const auto& [id, other] : services_.nodes.all()) {
-        if (other.leaving) continue;
-        if (other.refused != authority_.version()) return;  // it may still build it
-        any = true;
-    }
-    if (any) withdraw_unbuildable("node " + node.hello.name + ": " + refusal.reason, now);
-}
-
-void SceneSession::withdraw_unbuildable(const std::string& reason, TimePoint now) {
-    // Later edits have not been tried; one of them may be the remedy.
-    const auto withdrawn =
-        authority_.withdraw(built_transactions_, published_transactions_, {.name = "the master"});
-    if (withdrawn.empty()) return;
-    for (const SceneAuthority::Withdrawn& edit : withdrawn) {
-        const std::string text = "edit " + std::to_string(edit.transaction) + " (" + edit.text +
-                                 ") is undone, since no node can build the scene with it: " + reason;
-        services_.events({wire::Severity::Error, text});
-        if (const SessionRecord* author = services_.sessions.find(edit.author))
-            services_.outbox.control(author->control, wire::Notice{wire::Severity::Error, text});
-    }
-    publish_if_due(now);
 }
 
 net::Bytes SceneSession::trace(const wire::ReadTrace& request) const {
@@ -208,7 +199,7 @@ void SceneSession::done(const SessionRecord& session, std::uint64_t request, std
 }
 
 void SceneSession::handle(SessionRecord& session, const wire::ReadScene& request) {
-    if (std::string problem = reads_.read(session, request); !problem.empty())
+    if (std::string problem = reads_.read(session, request, authority_.pending()); !problem.empty())
         done(session, request.request, std::move(problem));
 }
 
@@ -244,41 +235,6 @@ void SceneSession::handle(SessionRecord& session, const wire::ReadWriters& reque
                              wire::Writers{request.request, authority_.writers(request.object)});
 }
 
-void SceneSession::handle(SessionRecord& session, wire::RequestView request, TimePoint now) {
-    std::string problem = request.share ? views_.share(session.id, request.number, request.wanted)
-                                        : open_view(session, request.number, request.wanted, now);
-    if (request.request != 0 || !problem.empty()) done(session, request.request, std::move(problem));
-}
-
-std::string SceneSession::open_view(const SessionRecord& session, std::uint64_t number,
-                                    const session::ViewRequest& wanted, TimePoint now) {
-    if (wanted.detached) {
-        if (std::string problem = submission_problem(session, wanted); !problem.empty()) return problem;
-    }
-    if (std::string problem = problem_of(wanted); !problem.empty()) return problem;
-    if (std::string problem = viewer_problem(session, number, wanted); !problem.empty()) return problem;
-    view::View completed = wanted.view;
-    complete(completed);
-    if (std::string problem = memory_problem(film_bytes(completed), "the film of this view",
-                                             views_.watched(session.id, number));
-        !problem.empty())
-        return problem;
-    // Earlier edits are visible in the view, and the render origin follows the camera while it is the only one.
-    publish_if_due(now);
-    const bool waits_for_end = wanted.frames == session::Frames::Last;
-    if (waits_for_end && authority_.has_unpublished() && views_.may_publish()) {
-        if (auto changes = authority_.publish()) publish(std::move(*changes), now);
-    }
-    if (views_.table().all().size() <= 1) {
-        const glm::dvec3 eye(wanted.view.camera.world_from_camera[3]);
-        if (auto moved = authority_.follow_camera(eye)) publish(std::move(*moved), now);
-    }
-    const ViewOwner owner{session.id, name(session.id), session.user, members_.at(session.id).key};
-    std::string problem = views_.open(owner, number, wanted, authority_.version(), now);
-    if (problem.empty() && wanted.detached) record_job(wanted.name);
-    return problem;
-}
-
 void SceneSession::handle(SessionRecord& session, const wire::SetViewFilter& request, TimePoint now) {
     wire::RequestDone done{.request = request.request, .accepted = true, .text = {}};
     try {
@@ -292,6 +248,9 @@ void SceneSession::handle(SessionRecord& session, const wire::SetViewFilter& req
 std::string SceneSession::open_display(const scene::BlobPtr& description, std::vector<scene::BlobPtr> content,
                                        TimePoint now) {
     if (!open_) return "there is no live scene: join one first";
+    // Its camera may have come with the edit before.
+    if (!is_editing() && authority_.has_unpublished() && views_.may_publish())
+        publish_edits([](TimePoint) {}, now);
     std::string problem = display_.open(description, std::move(content), now);
     if (problem.empty()) follow_display(now);
     return problem;
@@ -312,44 +271,6 @@ void SceneSession::handle(SessionRecord& session, const wire::JoinOutput& reques
         done(session, request.request, std::move(problem));
 }
 
-// The render origin follows the display while there are no other views.
-void SceneSession::follow_display(TimePoint now) {
-    const auto& views = views_.table().all();
-    if (!std::all_of(views.begin(), views.end(), [](const auto& entry) { return entry.second.in_group(); }))
-        return;
-    const auto head = display_.head_in_world();
-    if (!head) return;
-    if (auto moved = authority_.follow_camera(*head)) publish(std::move(*moved), now);
-}
-
-void SceneSession::publish(scene::ChangeList&& published, TimePoint now) {
-    const auto shared = std::make_shared<const scene::ChangeList>(std::move(published));
-    const scene::ChangeList& changes = *shared;
-    published_at_ = now;
-    ++counts_.versions;
-    published_transactions_ = authority_.transactions();
-    // Outdated work is cancelled before the change is sent to the nodes, so that they build sooner.
-    const bool restarts = views_.scene_changed(changes, authority_.scene());
-    const std::uint64_t before = services_.outbox.bytes.control;
-    distributor_.published(services_.nodes, shared, now);
-    counts_.change_bytes += services_.outbox.bytes.control - before;
-    traces_.published(changes.to, now);
-    if (display_.scene_changed(changes)) follow_display(now);
-    if (views_.table().all().empty()) {
-        traces_.no_open_views();
-    } else if (!restarts) {
-        traces_.merged(changes.to, now);  // the existing pictures show it
-    }
-}
-
-void SceneSession::publish_if_due(TimePoint now) {
-    const bool waits = authority_.has_unpublished();
-    views_.pause_passes(waits);
-    if (!waits || now - published_at_ < VersionInterval || !views_.may_publish()) return;
-    if (auto changes = authority_.publish()) publish(std::move(*changes), now);
-    views_.pause_passes(false);
-}
-
 void SceneSession::take(RenderOutput& output, TimePoint now) {
     if (const auto* report = std::get_if<MergeReport>(&output)) {
         const Dispatcher::Taken taken = services_.render.dispatcher.take(*report, now);
@@ -359,6 +280,8 @@ void SceneSession::take(RenderOutput& output, TimePoint now) {
     } else if (const auto* encoded = std::get_if<EncodedScene>(&output)) {
         distributor_.take(*encoded, services_.nodes, now);
         reads_.take(*encoded);
+    } else if (std::holds_alternative<EditDone>(output)) {
+        thread_.finish(now);
     } else if (auto* made = std::get_if<OutputResult>(&output)) {
         display_.add_output(std::move(*made), now);
     } else {
@@ -370,7 +293,7 @@ void SceneSession::take(RenderOutput& output, TimePoint now) {
 // nodes and frames for clients.
 void SceneSession::tick(TimePoint now) {
     keep_journal(now);
-    collector_.tick(authority_, now);
+    if (!is_editing()) collector_.tick(authority_, now);
     close_when_left(now);
     if (open_) {
         publish_if_due(now);
@@ -385,7 +308,7 @@ void SceneSession::tick(TimePoint now) {
 
 TimePoint SceneSession::next_event(TimePoint now) const {
     TimePoint next = std::min(views_.next_event(now), display_.next_event());
-    if (open_ && authority_.has_unpublished())
+    if (open_ && !is_editing() && authority_.has_unpublished())
         next = std::min(next, std::max(now, published_at_ + VersionInterval));
     return next;
 }
@@ -397,9 +320,9 @@ session::SceneStatus SceneSession::status() const {
     status.exclusive = is_exclusive();
     status.members = static_cast<std::uint32_t>(members_.size());
     status.views = static_cast<std::uint32_t>(views_.table().all().size());
-    status.transactions = authority_.transactions();
+    status.transactions = transactions_;
     if (journal_) {
-        status.journal_bytes = journal_->byte_size();
+        status.journal_bytes = journal_bytes_;
         status.checkpoints = journal_->checkpoints();
     }
     status.stages = traces_.stages();

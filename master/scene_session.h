@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -11,8 +12,10 @@
 #include "master/peers/node_table.h"
 #include "master/peers/session_table.h"
 #include "master/render/views.h"
+#include "master/scene/authority_thread.h"
 #include "master/scene/blob_collector.h"
 #include "master/scene/edit_trace.h"
+#include "master/scene/published_scene.h"
 #include "master/scene/scene_authority.h"
 #include "master/scene/scene_distributor.h"
 #include "master/scene/scene_reads.h"
@@ -41,14 +44,35 @@ struct MasterServices {
 // the last version is at least 16 ms old.
 class SceneSession {
   public:
+    static constexpr Duration VersionInterval = std::chrono::milliseconds(16);
+
     SceneSession(std::uint64_t epoch, const ViewSettings& settings, const MasterServices& services);
 
     // Records edits in the folder from now on, after reopening the session stored there. Throws Error if the
     // folder cannot be used.
     void record_to(const std::filesystem::path& folder, Duration checkpoint_interval, TimePoint now);
 
-    SceneAuthority& authority() { return authority_; }
-    const SceneAuthority& authority() const { return authority_; }
+    const PublishedScene& published() const { return published_; }
+    // True while the authority is on its thread: an edit is being applied or written to disk. What needs the authority
+    // has to wait; see waits().
+    bool is_editing() const { return thread_.is_busy(); }
+    // Whether this message of the session has to wait while an edit is being applied.
+    bool waits(const SessionRecord& session, const wire::ControlMessage& message) const;
+    // What work on the authority costs: objects that it goes through; whether it has to wait for the disk.
+    struct Cost {
+        std::size_t objects = 0;
+        bool writes = false;
+    };
+    Cost cost_of(const scene::Edit& edit) const { return {authority_.size_of(edit), true}; }
+    // Runs `work` on the authority, then `then` in the event loop: immediately, or on the authority's thread if it costs
+    // more than the loop can spare. Not while is_editing().
+    void run(const Cost& cost, std::function<void(SceneAuthority&)> work, std::function<void(TimePoint)> then,
+             TimePoint now);
+    // Destroys something large on a thread.
+    template <class T>
+    void discard(T&& value) {
+        thread_.discard(std::forward<T>(value));
+    }
     SceneDistributor& distributor() { return distributor_; }
     const SceneDistributor& distributor() const { return distributor_; }
     // Why the master has no room for so many more bytes of `what`; "" = it has. `replaced`: a view that goes for it.
@@ -72,18 +96,19 @@ class SceneSession {
     bool is_exclusive() const { return scene_.owner.has_value(); }
     // Whether the session could join the open scene immediately.
     bool admits(const SessionRecord& session, const wire::JoinScene& request) const;
-    // Opens a scene if none is open. Throws Error if the session may not join.
+    // Opens a scene if none is open, and sends the answer. Throws Error if the session may not join. Not while
+    // is_editing(), like all requests that wait for it.
     void join(SessionRecord& session, const wire::JoinScene& request, TimePoint now);
-    // Removes all members and empties the scene.
+    // Removes all members and empties the scene; is_open() is false at once.
     void close(TimePoint now);
     // A member has left; an exclusive scene is closed.
     void left(SessionId session, Views::DisconnectReason reason, TimePoint now);
 
-    // Distributes the changes to nodes, views and display.
-    void publish(scene::ChangeList&& changes, TimePoint now);
     // Called when a member's edit was answered.
     void edited(const SessionRecord& session, const scene::Edit& edit, const EditAnswer& answer,
                 std::uint64_t message_bytes, TimePoint now);
+    // The session can no longer edit; its locks are released.
+    void forget_editor(SessionId session);
     void node_built(const NodeRecord& node, const wire::VersionReport& report, TimePoint now);
     void node_gone(NodeId node) { traces_.node_gone(node); }
     // A node cannot build the version. If none can, the edits since the last version that one built are undone, and
@@ -96,13 +121,13 @@ class SceneSession {
     void handle(SessionRecord& session, const wire::ReadMembers& request, TimePoint now);
     void handle(SessionRecord& session, const wire::ReadHistory& request);
     void handle(SessionRecord& session, const wire::ReadWriters& request);
-    void handle(SessionRecord& session, wire::RequestView request, TimePoint now);
+    void handle(SessionRecord& session, const wire::RequestView& request, TimePoint now);
     void handle(SessionRecord& session, const wire::SetViewFilter& request, TimePoint now);
 
     // Jobs of this scene, and finished jobs of any scene; for any client.
     void handle(SessionRecord& session, const wire::ReadJobs& request, TimePoint now);
     void handle(SessionRecord& session, const wire::FetchJob& request);
-    void handle(SessionRecord& session, const wire::CancelJob& request);
+    void handle(SessionRecord& session, const wire::CancelJob& request, TimePoint now);
 
     // Returns "" or an error message.
     std::string open_display(const scene::BlobPtr& description, std::vector<scene::BlobPtr> content,
@@ -130,19 +155,30 @@ class SceneSession {
         TimePoint presence_until{};
     };
 
-    void open(wire::RecordedTitle scene);
+    void opened(wire::RecordedTitle scene);
+    void joined(SessionId session, const wire::JoinScene& request, const IdRange& ids, TimePoint now);
+    // Distributes the changes to nodes, views and display.
+    void publish(scene::ChangeList&& changes, TimePoint now);
+    void publish_edits(std::function<void(TimePoint)> then, TimePoint now);
+    void catch_up_with_edits(TimePoint now);
+    // The render origin follows the eye; then `then` is called, unless an edit is running.
+    void follow(const glm::dvec3& eye, TimePoint now, std::function<void(TimePoint)> then = {});
     std::string unique_name(const std::string& wanted) const;
     void done(const SessionRecord& session, std::uint64_t request, std::string problem);
     void follow_display(TimePoint now);
     void publish_if_due(TimePoint now);
     void keep_journal(TimePoint now);
     void write_saved_views(TimePoint now);
-    std::string open_view(const SessionRecord& session, std::uint64_t number,
-                          const session::ViewRequest& wanted, TimePoint now);
+    // "" or why the view cannot be opened.
+    std::string view_problem(const SessionRecord& session, std::uint64_t number,
+                             const session::ViewRequest& wanted) const;
+    void open_view(SessionId session, const wire::RequestView& request, TimePoint now);
+    void view_opened(SessionId session, const wire::RequestView& request, const std::string& problem);
     std::string viewer_problem(const SessionRecord& session, std::uint64_t number,
                                const session::ViewRequest& wanted) const;
     std::string submission_problem(const SessionRecord& session, const session::ViewRequest& wanted) const;
-    void record_job(const std::string& name);
+    void record_job(SessionId session, const wire::RequestView& request, TimePoint now);
+    void record_job_ends(std::vector<session::JobName> jobs, TimePoint now);
     void add_new_jobs(std::vector<wire::SavedView>& saved) const;
     void store_finished_jobs(TimePoint now);
     void withdraw_unbuildable(const std::string& reason, TimePoint now);
@@ -152,7 +188,8 @@ class SceneSession {
     MasterServices services_;
     Duration owner_timeout_;
     std::uint64_t memory_limit_;
-    SceneAuthority authority_;
+    SceneAuthority authority_;  // not while is_editing()
+    PublishedScene published_;
     SceneEncoder encoder_;
     SceneDistributor distributor_;
     SceneReads reads_;
@@ -166,11 +203,19 @@ class SceneSession {
         owner_missing_since_;  // a recovered exclusive scene: since when it waits for its owner
     std::map<SessionId, Member> members_;
     TimePoint published_at_{};
+    // What the end of the running edit is awaited for.
+    std::optional<SessionId> requester_;  // whose later messages wait for it
+    std::vector<SessionId> to_forget_;
+    std::optional<glm::dvec3> to_follow_;
+    std::string unbuildable_;  // why; "" = nothing is to be withdrawn
+    // As of the last time that no edit was running.
+    std::uint64_t transactions_ = 0, journal_bytes_ = 0;
     std::uint64_t published_transactions_ = 0;  // up to the published version
     std::uint64_t built_transactions_ = 0;      // up to the latest version that a node has built
     std::uint64_t progress_being_saved_ = 0;
     session::SceneStatus counts_;
     EditTraceLog traces_;
+    AuthorityThread thread_;  // the last member, since its work uses the others
 };
 
 }  // namespace tessera::master

@@ -49,11 +49,29 @@ std::string SceneSession::submission_problem(const SessionRecord& session,
     return Views::job_problem(wanted);
 }
 
-void SceneSession::record_job(const std::string& name) {
-    if (!journal_) return;
-    for (const auto& [id, view] : views_.table().all()) {
-        if (view.name == name) journal_->job_started(without_film(view));
+// A job is on disk before it is acknowledged.
+void SceneSession::record_job(SessionId session, const wire::RequestView& request, TimePoint now) {
+    if (!journal_) return view_opened(session, request, {});
+    const auto problem = std::make_shared<std::string>();
+    std::optional<ViewId> id;
+    std::optional<wire::SavedView> saved;
+    for (const auto& [number, view] : views_.table().all()) {
+        if (view.name != request.wanted.name) continue;
+        id = number;
+        saved = without_film(view);
     }
+    if (!saved) return view_opened(session, request, {});
+    requester_ = session;
+    run(
+        {.writes = true},
+        [this, problem, saved](SceneAuthority&) {
+            if (auto written = journal_->job_started(*saved); !written) *problem = written.error().what();
+        },
+        [this, problem, id, session, request](TimePoint) {
+            if (!problem->empty()) views_.release(*id);
+            view_opened(session, request, *problem);
+        },
+        now);
 }
 
 // Jobs submitted while the views of a checkpoint were being copied: their journal records are before it.
@@ -95,10 +113,25 @@ void SceneSession::store_finished_jobs(TimePoint now) {
         }
     }
     services_.jobs.remove_expired(since_1970());
-    // From now on a restarted master need not render them again.
-    for (const session::JobName& job : services_.jobs.take_written()) {
-        if (journal_) journal_->job_ended(job);
-    }
+    if (!is_editing()) record_job_ends(services_.jobs.take_written(), now);
+}
+
+// From now on a restarted master need not render them again.
+void SceneSession::record_job_ends(std::vector<session::JobName> jobs, TimePoint now) {
+    if (!journal_ || jobs.empty()) return;
+    const auto problems = std::make_shared<std::vector<std::string>>();
+    run(
+        {.writes = true},
+        [this, problems, jobs = std::move(jobs)](SceneAuthority&) {
+            for (const session::JobName& job : jobs) {
+                if (auto written = journal_->job_ended(job); !written)
+                    problems->emplace_back(written.error().what());
+            }
+        },
+        [this, problems](TimePoint) {
+            for (const std::string& problem : *problems) services_.events({wire::Severity::Error, problem});
+        },
+        now);
 }
 
 const ViewState* SceneSession::job_view(const session::JobName& job) const {
@@ -162,13 +195,13 @@ void SceneSession::handle(SessionRecord& session, const wire::FetchJob& request)
                                .picture = stored->picture});
 }
 
-void SceneSession::handle(SessionRecord& session, const wire::CancelJob& request) {
+void SceneSession::handle(SessionRecord& session, const wire::CancelJob& request, TimePoint now) {
     const session::JobName job = named(session, request.job);
     if (!may_see(session, job.user)) return done(session, request.request, no_such(job));
     const bool was_kept = services_.jobs.remove(job);
     const ViewState* view = job_view(job);
     if (view == nullptr) return done(session, request.request, was_kept ? "" : no_such(job));
-    if (journal_) journal_->job_ended({view->owner.user, view->name});
+    record_job_ends({{view->owner.user, view->name}}, now);
     views_.release(view->id);
     done(session, request.request, {});
 }

@@ -1,5 +1,6 @@
 #include "master/session_service.h"
 
+#include <algorithm>
 #include <functional>
 
 #include "mediator/wire/display_codec.h"
@@ -88,7 +89,7 @@ void SessionService::submit(SessionRecord& session, const wire::SubmitEditByBlob
 void SessionService::refuse_edit(SessionRecord& session, std::uint64_t sequence, std::string problem) {
     outbox_.control(session.control, wire::EditReply{.sequence = sequence,
                                                      .result = {.accepted = false,
-                                                                .version = scene_.authority().version(),
+                                                                .version = scene_.published().version(),
                                                                 .problems = listed({std::move(problem)})}});
 }
 
@@ -118,55 +119,133 @@ void SessionService::request_blobs(SessionRecord& session, TimePoint now) {
     for (const wire::BlobRequest& request : session.fetcher.due(now)) outbox_.bulk(*session.bulk, request);
 }
 
-bool SessionService::blobs_are_here(SessionRecord& session, SessionRecord::PendingEdit& pending) {
-    if (pending.encoded) {
-        const scene::BlobPtr blob = blobs_->find(pending.encoded->hash);
-        if (!blob) {
-            want(session, *pending.encoded);
-            return false;
+// An edit on its way through the authority; long ones are decoded there, too.
+struct SessionService::RunningEdit {
+    SessionId session;
+    SessionRecord::PendingEdit pending;
+    scene::BlobPtr encoded;
+    Editor who;
+    std::vector<scene::BlobRef> missing;  // wanted before it can be applied
+    EditAnswer answer;
+    std::string problem;
+
+    void run(SceneAuthority& authority) {
+        try {
+            if (encoded) decode();
+            missing = authority.missing_blobs(pending.edit);
+            if (missing.empty()) answer = authority.submit(pending.edit, who);
+        } catch (const std::bad_alloc&) {
+            problem = "the master has no memory for this edit: split it";
+        } catch (const std::exception& error) {
+            problem = error.what();
         }
-        auto decoded = wire::decode_edit(blob->bytes());
+    }
+
+  private:
+    void decode() {
+        auto decoded = wire::decode_edit(encoded->bytes());
         if (!decoded) throw decoded.error();
         decoded->session = pending.edit.session;  // overrides the blob's value
         decoded->sequence = pending.edit.sequence;
         pending.edit = std::move(*decoded);
-        pending.bytes += blob->bytes().size();
+        pending.bytes += encoded->bytes().size();
         pending.encoded.reset();
+        encoded.reset();
     }
-    const std::vector<scene::BlobRef> missing = scene_.authority().missing_blobs(pending.edit);
-    for (const scene::BlobRef& blob : missing) want(session, blob);
-    return missing.empty();
-}
+};
 
 void SessionService::advance(SessionRecord& session, TimePoint now) {
-    while (!session.edits.empty()) {
+    bool waits = false;
+    while (!session.edits.empty() && !session.edit_runs) {
         SessionRecord::PendingEdit& pending = session.edits.front();
         if (!scene_.is_member(session.id)) {
             refuse_edit(session, pending.edit.sequence, "this session has no open scene: open one first");
             session.edits.pop_front();
             continue;
         }
-        try {
-            if (!blobs_are_here(session, pending)) break;
-        } catch (const Error& error) {
-            refuse_edit(session, pending.edit.sequence, error.what());
-            session.edits.pop_front();
-            continue;
+        if (pending.encoded && !blobs_->find(pending.encoded->hash)) {
+            try {
+                want(session, *pending.encoded);
+                break;
+            } catch (const Error& error) {
+                refuse_edit(session, pending.edit.sequence, error.what());
+                session.edits.pop_front();
+                continue;
+            }
         }
-        const EditAnswer answer =
-            scene_.authority().submit(pending.edit, {scene_.name(session.id), session.user, since_1970()});
-        scene_.edited(session, pending.edit, answer, pending.bytes, now);
-        outbox_.control(session.control, wire::EditReply{.sequence = pending.edit.sequence,
-                                                         .result = {.accepted = answer.accepted,
-                                                                    .version = answer.version,
-                                                                    .problems = listed(answer.problems),
-                                                                    .transaction = answer.transaction,
-                                                                    .notes = listed(answer.notes)}});
-        session.edits.pop_front();
+        waits = scene_.is_editing();
+        if (waits) break;
+        const std::size_t before = session.edits.size();
+        apply_first(session, now);
+        if (!session.edit_runs && session.edits.size() == before) break;  // it waits for blobs
     }
-    if (session.opening) advance_display(session, now);
+    session.edits_wait = waits || session.edit_runs;
+    if (session.opening && !session.edit_runs) advance_display(session, now);
     if (session.edits.empty() && !session.opening) session.fetcher.release_completed();
     request_blobs(session, now);
+}
+
+void SessionService::apply_first(SessionRecord& session, TimePoint now) {
+    const auto edit = std::make_shared<RunningEdit>();
+    SessionRecord::PendingEdit& pending = session.edits.front();
+    const std::size_t encoded_bytes = pending.encoded ? pending.encoded->byte_size : 0;
+    edit->session = session.id;
+    if (pending.encoded) edit->encoded = blobs_->find(pending.encoded->hash);
+    edit->pending = std::move(pending);
+    pending.edit.sequence = edit->pending.edit.sequence;
+    edit->who = {scene_.name(session.id), session.user, since_1970()};
+    last_served_ = session.id;
+    session.edit_runs = session.edits_wait = true;
+    SceneSession::Cost cost = scene_.cost_of(edit->pending.edit);
+    cost.objects += encoded_bytes;  // at least a byte each
+    scene_.run(
+        cost, [edit](SceneAuthority& authority) { edit->run(authority); },
+        [this, edit](TimePoint at) {
+            applied(*edit, at);
+            if (edit->pending.edit.entries.size() > SceneEncoder::ShortList) scene_.discard(edit);
+        },
+        now);
+}
+
+void SessionService::applied(RunningEdit& edit, TimePoint now) {
+    SessionRecord* session = sessions_.find(edit.session);
+    if (session == nullptr) return;  // it has left; what was accepted stays
+    session->edit_runs = session->edits_wait = false;
+    const std::uint64_t sequence = edit.pending.edit.sequence;
+    if (edit.problem.empty() && !edit.missing.empty()) {
+        try {
+            for (const scene::BlobRef& blob : edit.missing) want(*session, blob);
+            session->edits.front() = std::move(edit.pending);  // tried again when they are here
+            return request_blobs(*session, now);
+        } catch (const Error& error) {
+            edit.problem = error.what();
+        }
+    }
+    session->edits.pop_front();
+    session->edits_wait = true;  // what comes after it: see advance_waiting()
+    if (!edit.problem.empty()) return refuse_edit(*session, sequence, edit.problem);
+    // A scene that was closed meanwhile has no member to name.
+    if (scene_.is_member(session->id))
+        scene_.edited(*session, edit.pending.edit, edit.answer, edit.pending.bytes, now);
+    outbox_.control(session->control, wire::EditReply{.sequence = sequence,
+                                                      .result = {.accepted = edit.answer.accepted,
+                                                                 .version = edit.answer.version,
+                                                                 .problems = listed(edit.answer.problems),
+                                                                 .transaction = edit.answer.transaction,
+                                                                 .notes = listed(edit.answer.notes)}});
+}
+
+// Sessions take turns, so that one with many long edits does not keep the others waiting.
+void SessionService::advance_waiting(TimePoint now) {
+    std::vector<SessionId> waiting;
+    for (const auto& [id, session] : sessions_.all()) {
+        if (session.edits_wait && !session.edit_runs) waiting.push_back(id);
+    }
+    std::ranges::rotate(waiting, std::ranges::upper_bound(waiting, last_served_));
+    for (const SessionId id : waiting) {
+        if (scene_.is_editing()) return;
+        if (SessionRecord* session = sessions_.find(id)) advance(*session, now);
+    }
 }
 
 void SessionService::open_display(SessionRecord& session, const wire::OpenDisplay& request, TimePoint now) {
@@ -214,7 +293,7 @@ void SessionService::chunk(SessionRecord& session, wire::BlobChunk&& chunk, Time
     (void)session.fetcher.receive(std::move(chunk), now);
     if (session.fetcher.wanted_bytes() < wanted) scene_.collector().received(session.user, blob);
     // An edit of 100,000 objects is not looked through again for each of its blobs.
-    if (session.fetcher.idle()) return advance(session, now);
+    if (session.fetcher.idle() && !session.edit_runs) return advance(session, now);
     request_blobs(session, now);
 }
 
@@ -228,7 +307,7 @@ void SessionService::absent(SessionRecord& session, const wire::BlobAbsent& abse
                                                  "the client does not have blob " + to_hex(absent.hash) +
                                                      " that its display refers to"});
     }
-    if (session.edits.empty()) return;
+    if (session.edits.empty() || session.edit_runs) return;
     refuse_edit(session, session.edits.front().edit.sequence,
                 "the client does not have blob " + to_hex(absent.hash) + " that its edit refers to");
     session.edits.pop_front();
@@ -239,23 +318,24 @@ void SessionService::absent(SessionRecord& session, const wire::BlobAbsent& abse
 void SessionService::closed(SessionId id, Views::DisconnectReason reason, TimePoint now) {
     scene_.left(id, reason, now);
     sessions_.remove(id);
-    scene_.authority().forget(id);
     tick(now);
 }
 
 void SessionService::tick(TimePoint now) {
+    advance_waiting(now);
     const auto admit_from_queue = [&](SessionId id) {
         SessionRecord& session = *sessions_.find(id);
         sessions_.leave_queue(id);
         const wire::JoinScene request = *std::exchange(session.joining, std::nullopt);
         admit(session, request, now);
     };
-    while (!scene_.is_open() && !sessions_.queue().empty()) admit_from_queue(sessions_.queue().front());
+    while (!scene_.is_open() && !scene_.is_editing() && !sessions_.queue().empty())
+        admit_from_queue(sessions_.queue().front());
     // A client that would join a live scene does not wait for those ahead that want an exclusive scene.
     const std::deque<SessionId> waiting = sessions_.queue();
     for (const SessionId id : waiting) {
         const SessionRecord& session = *sessions_.find(id);
-        if (scene_.admits(session, *session.joining)) admit_from_queue(id);
+        if (!scene_.is_editing() && scene_.admits(session, *session.joining)) admit_from_queue(id);
     }
     for (const SessionId id : sessions_.queue()) {
         SessionRecord& session = *sessions_.find(id);

@@ -26,10 +26,13 @@ class SessionService {
     void tick(TimePoint now);  // admits queued clients, requests chunks
 
   private:
-    void advance(SessionRecord& session, TimePoint now);            // applies edits whose blobs have arrived
+    struct RunningEdit;
+    void advance(SessionRecord& session, TimePoint now);  // applies edits whose blobs have arrived
+    void apply_first(SessionRecord& session, TimePoint now);
+    void applied(RunningEdit& edit, TimePoint now);
+    void advance_waiting(TimePoint now);
     void want(SessionRecord& session, const scene::BlobRef& blob);  // throws Error over a limit
     void request_blobs(SessionRecord& session, TimePoint now);
-    bool blobs_are_here(SessionRecord& session, SessionRecord::PendingEdit& edit);
     void advance_display(SessionRecord& session, TimePoint now);
     void refuse_edit(SessionRecord& session, std::uint64_t sequence, std::string problem);
     void admit(SessionRecord& session, const wire::JoinScene& request, TimePoint now);
@@ -40,6 +43,7 @@ class SessionService {
     SessionTable& sessions_;
     SceneSession& scene_;
     Outbox& outbox_;
+    SessionId last_served_;  // whose edit was started last
 };
 
 }  // namespace tessera::master

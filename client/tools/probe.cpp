@@ -46,7 +46,7 @@ scene::ChangeList authority_snapshot(ViewPlan& plan, const std::shared_ptr<scene
     if (!chosen) throw chosen.error();
     camera = *chosen;
     authority.follow_camera(glm::dvec3(camera.world_from_camera[3]));
-    return authority.snapshot();
+    return authority.published().snapshot();
 }
 
 int run(const ProbeOptions& options) {

@@ -36,13 +36,9 @@ std::string first_problem(const display::Display& display) {
 
 }  // namespace
 
-DisplayService::DisplayService(SceneAuthority& authority, SessionTable& sessions, Views& renderer,
+DisplayService::DisplayService(const PublishedScene& scene, SessionTable& sessions, Views& renderer,
                                Outbox& outbox, EventSink events)
-    : authority_(authority),
-      sessions_(sessions),
-      renderer_(renderer),
-      outbox_(outbox),
-      events_(std::move(events)) {}
+    : scene_(scene), sessions_(sessions), renderer_(renderer), outbox_(outbox), events_(std::move(events)) {}
 
 std::string DisplayService::open(const scene::BlobPtr& description, std::vector<scene::BlobPtr> content,
                                  TimePoint now) {
@@ -61,7 +57,7 @@ std::string DisplayService::open(const scene::BlobPtr& description, std::vector<
         }
     }
     if (open_) forget();
-    view::FollowedCamera camera(authority_.scene(), decoded->camera);
+    view::FollowedCamera camera(scene_.scene(), decoded->camera);
     open_.emplace(Open{.display = std::move(*decoded),
                        .description = scene::reference(*description),
                        .content = std::move(content),
@@ -74,7 +70,7 @@ std::string DisplayService::open(const scene::BlobPtr& description, std::vector<
     events_({wire::Severity::Info, "display '" + open_->display.name + "' is open: " + std::to_string(count) +
                                        (count == 1 ? " output" : " outputs")});
     report_camera();
-    renderer_.group().open(open_->display.spp, open_->display.coarsest, authority_.version());
+    renderer_.group().open(open_->display.spp, open_->display.coarsest, scene_.version());
     for (std::size_t i = 0; i < count; ++i) {
         const auto output_client = output_clients.extract(open_->display.outputs[i].name);
         if (output_client.empty()) continue;
@@ -220,7 +216,7 @@ void DisplayService::report_camera() {
 }
 
 bool DisplayService::scene_changed(const scene::ChangeList& changes) {
-    if (!open_ || !open_->camera.follow(changes, authority_.scene())) return false;
+    if (!open_ || !open_->camera.follow(changes, scene_.scene())) return false;
     report_camera();
     renderer_.group().changed();
     return open_->camera.world_from_camera().has_value();

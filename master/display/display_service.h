@@ -11,7 +11,7 @@
 #include "master/display/frame_lock.h"
 #include "master/peers/session_table.h"
 #include "master/render/views.h"
-#include "master/scene/scene_authority.h"
+#include "master/scene/published_scene.h"
 #include "mediator/display/display.h"
 #include "mediator/view/placed_cameras.h"
 
@@ -22,7 +22,7 @@ namespace tessera::master {
 // (frame_lock.h). Driven by messages from the render master.
 class DisplayService {
   public:
-    DisplayService(SceneAuthority& authority, SessionTable& sessions, Views& renderer, Outbox& outbox,
+    DisplayService(const PublishedScene& scene, SessionTable& sessions, Views& renderer, Outbox& outbox,
                    EventSink events);
 
     // `content`: the blobs that the description refers to; kept as long as the display. Returns "" or the problem.
@@ -99,7 +99,7 @@ class DisplayService {
     void forget();
     void dismiss(const OutputClient& output_client, const std::string& reason);  // it will ask again
 
-    SceneAuthority& authority_;
+    const PublishedScene& scene_;
     SessionTable& sessions_;
     Views& renderer_;
     Outbox& outbox_;

@@ -31,6 +31,15 @@ struct SessionRecord {
         std::uint64_t bytes = 0;  // that it took on the wire
     };
     std::deque<PendingEdit> edits;
+    bool edits_wait = false;  // for the scene authority: their blobs are here, or the first is being applied
+    bool edit_runs = false;   // the first is being applied
+    // Control messages that wait until an edit has been applied, in the order of arrival.
+    struct HeldMessage {
+        wire::ControlMessage message;
+        std::size_t byte_size = 0;
+    };
+    std::deque<HeldMessage> held;
+    std::size_t held_bytes = 0;
     std::optional<wire::OpenDisplay> opening;  // waits until its blobs have arrived
     std::int64_t heartbeat_sent_at = 0;        // its latest, and when it came: what our next heartbeat echoes
     TimePoint heartbeat_at{};

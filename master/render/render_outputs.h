@@ -61,8 +61,10 @@ struct CalibrationResult {
 struct TaskFailure {
     std::string text;
 };
+// An edit that was applied on another thread is done; see scene/authority_thread.h.
+struct EditDone {};
 using RenderOutput = std::variant<MergeReport, EncodedTile, FilmBlocks, Reconstructed, CalibrationResult,
-                                  OutputResult, EncodedScene, TaskFailure>;
+                                  OutputResult, EncodedScene, EditDone, TaskFailure>;
 
 // Results of the threads that merge film and reconstruct pictures, for the event loop that owns the channel: each
 // result wakes it. Thread-safe.

@@ -121,7 +121,9 @@ wire::CheckpointState recorded(const AuthorityState& state) {
     wire::CheckpointState to{.scene = scene::snapshot(state.scene),
                              .last_transaction = state.last_transaction};
     WriterList writers;
-    for (const auto& [id, fields] : state.writers.all()) to.objects.push_back({id, writers.fields(*fields)});
+    state.writers.for_each([&](ObjectId id, const ObjectWriters& fields) {
+        to.objects.push_back({id, writers.fields(fields)});
+    });
     for (const Transaction& transaction : state.history)
         to.transactions.push_back(recorded(transaction, writers));
     for (const EditorRecord& editor : state.editors) to.editors.push_back(recorded(editor));

@@ -101,6 +101,22 @@ std::vector<scene::BlobRef> SceneAuthority::missing_blobs(const scene::Edit& edi
     return missing;
 }
 
+// An edit that extends the transaction of its group may have to copy it, if a checkpoint still holds it; and the oldest
+// transaction may go.
+std::size_t SceneAuthority::size_of(const scene::Edit& edit) const {
+    std::size_t size = edit.entries.size();
+    if (history_.all().size() == EditHistory::Length) size += history_.all().front().changes.all().size();
+    const EditorRecord* editor = editors_.of(edit.session);
+    if (editor == nullptr) return size;
+    std::uint64_t number = edit.undo;
+    if (number == scene::UndoLatest) number = history_.latest_to_undo(editor->number);
+    if (number == scene::RedoLatest) number = history_.latest_to_redo(editor->number);
+    if (number == 0 && edit.edit_group != 0 && edit.edit_group == editor->edit_group)
+        number = editor->edit_group_transaction;
+    if (const Transaction* transaction = history_.find(number)) size += transaction->changes.all().size();
+    return size;
+}
+
 std::optional<std::string> SceneAuthority::order_problem(const EditorRecord& editor,
                                                          std::uint64_t sequence) const {
     const std::string number = "edit " + std::to_string(sequence);
@@ -329,16 +345,17 @@ void SceneAuthority::commit(EditorRecord& editor, const scene::Edit& edit, const
 
 std::optional<scene::ChangeList> SceneAuthority::publish() {
     if (!has_unpublished()) return std::nullopt;
-    scene::ChangeList list = versions_.publish(scene_);
-    scene_.set_version(list.to);
-    return list;
+    return versions_.publish(scene_);
+}
+
+bool SceneAuthority::is_near_origin(const glm::dvec3& camera_position) const {
+    const auto* root = scene_.find_as<scene::Root>(scene::RootId);
+    const glm::dvec3 offset = glm::abs(camera_position - root->render_origin);
+    return offset.x <= RenderOriginCell && offset.y <= RenderOriginCell && offset.z <= RenderOriginCell;
 }
 
 std::optional<scene::ChangeList> SceneAuthority::follow_camera(const glm::dvec3& camera_position) {
-    const auto* root = scene_.find_as<scene::Root>(scene::RootId);
-    const glm::dvec3 offset = glm::abs(camera_position - root->render_origin);
-    if (offset.x <= RenderOriginCell && offset.y <= RenderOriginCell && offset.z <= RenderOriginCell)
-        return {};
+    if (is_near_origin(camera_position)) return {};
     scene::Root moved;
     moved.render_origin = glm::round(camera_position / RenderOriginCell) * RenderOriginCell;
     const std::vector<scene::Entry> entries{

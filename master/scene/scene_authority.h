@@ -51,6 +51,8 @@ class SceneAuthority {
     // All blobs must be in the store. Accepted or refused as a whole, with all reasons. An edit sent again (same
     // sequence as the last) gets its first answer again; an older one, or one after a gap, is refused.
     Answer submit(const scene::Edit& edit, const Editor& who = {});
+    // Objects that the edit may change.
+    std::size_t size_of(const scene::Edit& edit) const;
     // Blobs that the edit needs and that are not in the store.
     std::vector<scene::BlobRef> missing_blobs(const scene::Edit& edit) const;
 
@@ -63,29 +65,24 @@ class SceneAuthority {
     };
     std::vector<Withdrawn> withdraw(std::uint64_t built, std::uint64_t published, const Editor& by);
 
-    // If the camera has left the neighbourhood of the render origin's cell: moves the origin to the camera's
-    // cell, and publishes.
+    // Whether the camera is in the neighbourhood of the render origin's cell.
+    bool is_near_origin(const glm::dvec3& camera_position) const;
+    // If it is not: moves the origin to the camera's cell, and publishes.
     std::optional<scene::ChangeList> follow_camera(const glm::dvec3& camera_position);
     // Resets to an empty, published scene without editors and history. Returns nothing if the scene was empty.
     std::optional<scene::ChangeList> clear();
 
     // ---- versions ----
     bool has_unpublished() const { return versions_.has_unpublished(); }
+    std::size_t unpublished_objects() const { return versions_.unpublished_objects(); }
     // Publishes all edits since the last version; returns nothing if there are none. The list may be empty: edits
     // that cancel each other are a version too, since their answers named it.
     std::optional<scene::ChangeList> publish();
-    Version version() const { return versions_.version(); }  // published
-    Version pending() const {
-        return versions_.pending();
-    }  // the version that the unpublished edits will have
-    Hash128 state_hash() const { return versions_.state_hash(); }  // at version()
-    const scene::Scene& scene() const { return scene_; }           // the head
-    // The scene at version(), without later edits.
-    scene::ChangeList snapshot() const { return versions_.snapshot(scene_); }
-    // The same as a scene of its own; cheap, since it shares its objects with the head.
-    scene::Scene published_scene() const { return versions_.published(scene_); }
-    // Changes from the published version `known` to version(); nothing if it is unknown or too old: use snapshot().
-    std::optional<scene::ChangeList> since(Version known) const { return versions_.since(known, scene_); }
+    const PublishedScene& published() const { return versions_.published(); }
+    Version version() const { return published().version(); }
+    // The version that the unpublished edits will have.
+    Version pending() const { return versions_.pending(); }
+    const scene::Scene& scene() const { return scene_; }  // the head
 
     // ---- locks, history ----
     std::vector<std::string> lock(SessionId session, const std::string& name,

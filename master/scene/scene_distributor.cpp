@@ -10,7 +10,9 @@ void SceneDistributor::published(NodeTable& nodes, const std::shared_ptr<const s
     const auto follows = [&](const NodeRecord& node) { return node.sent == changes->from; };
     if (changes->entries.size() > SceneEncoder::ShortList) {
         for (auto& [id, node] : nodes.all()) {
-            if (follows(node)) await_changes(node, changes, now);
+            if (follows(node))
+                await_changes(
+                    node, changes->from, changes->to, [changes] { return *changes; }, now);
         }
         return;
     }
@@ -30,13 +32,12 @@ void SceneDistributor::published(NodeTable& nodes, const std::shared_ptr<const s
 }
 
 void SceneDistributor::send_snapshot(NodeRecord& node, TimePoint now) {
-    const Version version = authority_.version();
+    const Version version = scene_.version();
     const bool is_current = snapshot_ && snapshot_version_ == version && blobs_.find(snapshot_->hash());
-    if (!is_current && authority_.scene().objects().size() > SceneEncoder::ShortList) {
+    if (!is_current && scene_.scene().objects().size() > SceneEncoder::ShortList) {
         if (snapshot_job_ == 0) {
-            snapshot_job_ =
-                encoder_.encode({version.epoch, 0}, version,
-                                [scene = authority_.published_scene()] { return scene::snapshot(scene); });
+            snapshot_job_ = encoder_.encode({version.epoch, 0}, version,
+                                            [scene = scene_.scene()] { return scene::snapshot(scene); });
         }
         node.awaits = snapshot_job_;
         node.sent = {};
@@ -44,7 +45,7 @@ void SceneDistributor::send_snapshot(NodeRecord& node, TimePoint now) {
         return;
     }
     if (!is_current) {
-        snapshot_ = blobs_.insert(wire::encode(authority_.snapshot()));
+        snapshot_ = blobs_.insert(wire::encode(scene_.snapshot()));
         snapshot_version_ = version;
     }
     if (node.sent != version) node.hash_mismatches = 0;
@@ -60,12 +61,12 @@ void SceneDistributor::send_blob(NodeRecord& node, Version from, Version to, con
 }
 
 // The list is encoded once for all nodes that await the same.
-void SceneDistributor::await_changes(NodeRecord& node,
-                                     const std::shared_ptr<const scene::ChangeList>& changes, TimePoint now) {
-    if (changes_job_ == 0 || changes_from_ != changes->from || changes_to_ != changes->to) {
-        changes_job_ = encoder_.encode(changes->from, changes->to, [changes] { return *changes; });
-        changes_from_ = changes->from;
-        changes_to_ = changes->to;
+void SceneDistributor::await_changes(NodeRecord& node, Version from, Version to,
+                                     std::function<scene::ChangeList()> make, TimePoint now) {
+    if (changes_job_ == 0 || changes_from_ != from || changes_to_ != to) {
+        changes_job_ = encoder_.encode(from, to, std::move(make));
+        changes_from_ = from;
+        changes_to_ = to;
     }
     node.awaits = changes_job_;
     node.sent = {};
@@ -74,16 +75,16 @@ void SceneDistributor::await_changes(NodeRecord& node,
 
 // Versions were published while the one that it was sent was being encoded.
 void SceneDistributor::catch_up(NodeRecord& node, TimePoint now) {
-    if (node.sent == authority_.version()) return;
-    const auto changes = authority_.since(node.sent);
-    if (!changes) return send_snapshot(node, now);
-    if (changes->entries.size() > SceneEncoder::ShortList)
-        return await_changes(node, std::make_shared<const scene::ChangeList>(*changes), now);
-    const net::Bytes message = wire::encode(wire::ControlMessage(wire::Changes{*changes}));
-    if (!wire::fits_control(message))
-        return await_changes(node, std::make_shared<const scene::ChangeList>(*changes), now);
+    if (node.sent == scene_.version()) return;
+    const auto missed = scene_.since(node.sent);
+    if (!missed) return send_snapshot(node, now);
+    const auto make = [missed] { return missed->list(); };
+    if (missed->max_size() > SceneEncoder::ShortList)
+        return await_changes(node, node.sent, scene_.version(), make, now);
+    const net::Bytes message = wire::encode(wire::ControlMessage(wire::Changes{missed->list()}));
+    if (!wire::fits_control(message)) return await_changes(node, node.sent, scene_.version(), make, now);
     outbox_.control(node.control, net::Bytes(message));
-    node.sent = changes->to;
+    node.sent = scene_.version();
     node.hash_mismatches = 0;
 }
 
@@ -91,7 +92,7 @@ void SceneDistributor::take(const EncodedScene& made, NodeTable& nodes, TimePoin
     const bool is_snapshot = made.job == snapshot_job_;
     if (is_snapshot) snapshot_job_ = 0;
     if (made.job == changes_job_) changes_job_ = 0;
-    const bool is_usable = made.blob && made.to.epoch == authority_.version().epoch;
+    const bool is_usable = made.blob && made.to.epoch == scene_.version().epoch;
     scene::BlobPtr blob;
     for (auto& [id, node] : nodes.all()) {
         if (node.awaits != made.job) continue;
@@ -118,8 +119,8 @@ void SceneDistributor::resync(NodeRecord& node, const wire::Resync& request, Tim
 
 SceneDistributor::CheckResult SceneDistributor::reported(NodeRecord& node, const wire::VersionReport& report,
                                                          TimePoint now) {
-    if (report.version != authority_.version()) return CheckResult::Behind;
-    if (report.state_hash == authority_.state_hash()) {
+    if (report.version != scene_.version()) return CheckResult::Behind;
+    if (report.state_hash == scene_.state_hash()) {
         node.reported = report.version;
         return CheckResult::Good;
     }
@@ -136,7 +137,7 @@ SceneDistributor::CheckResult SceneDistributor::reported(NodeRecord& node, const
 }
 
 void SceneDistributor::refused(NodeRecord& node, const wire::SceneRefused& refusal) {
-    if (refusal.version != authority_.version()) return;
+    if (refusal.version != scene_.version()) return;
     node.refused = refusal.version;
     node.refusal = refusal.reason;
     events_({wire::Severity::Warning, "node " + node.hello.name + " cannot build version " +
@@ -148,7 +149,7 @@ void SceneDistributor::repair(NodeTable& nodes, TimePoint now, Duration timeout)
         const bool busy = node.state.phase == session::NodePhase::Syncing ||
                           node.state.phase == session::NodePhase::Building || node.leaving ||
                           node.awaits != 0;
-        const bool settled = node.reported == authority_.version() || node.refused == authority_.version();
+        const bool settled = node.reported == scene_.version() || node.refused == scene_.version();
         if (settled || busy || now - node.sent_at < timeout) continue;
         ++resyncs_;
         send_snapshot(node, now);

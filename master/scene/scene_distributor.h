@@ -1,25 +1,23 @@
 #pragma once
 
+#include <functional>
+
 #include "master/peers/event.h"
 #include "master/peers/node_table.h"
 #include "master/peers/outbox.h"
-#include "master/scene/scene_authority.h"
+#include "master/scene/published_scene.h"
 #include "master/scene/scene_encoder.h"
 
 namespace tessera::master {
 
-// Keeps the nodes at the authority's version: sends the next change list if it follows the version last sent to the
+// Keeps the nodes at the published version: sends the next change list if it follows the version last sent to the
 // node, else a snapshot. Repairs losses: a node that falls behind is sent a snapshot, as is one whose state hash is
 // wrong; one whose hash is wrong twice at the same version is to be removed.
 class SceneDistributor {
   public:
-    SceneDistributor(SceneAuthority& authority, SceneEncoder& encoder, scene::BlobStore& blobs,
+    SceneDistributor(const PublishedScene& scene, SceneEncoder& encoder, scene::BlobStore& blobs,
                      Outbox& outbox, EventSink events)
-        : authority_(authority),
-          encoder_(encoder),
-          blobs_(blobs),
-          outbox_(outbox),
-          events_(std::move(events)) {}
+        : scene_(scene), encoder_(encoder), blobs_(blobs), outbox_(outbox), events_(std::move(events)) {}
 
     void published(NodeTable& nodes, const std::shared_ptr<const scene::ChangeList>& changes, TimePoint now);
     void take(const EncodedScene& made, NodeTable& nodes, TimePoint now);
@@ -39,11 +37,11 @@ class SceneDistributor {
   private:
     void send_snapshot(NodeRecord& node, TimePoint now);
     void send_blob(NodeRecord& node, Version from, Version to, const scene::BlobPtr& blob, TimePoint now);
-    void await_changes(NodeRecord& node, const std::shared_ptr<const scene::ChangeList>& changes,
+    void await_changes(NodeRecord& node, Version from, Version to, std::function<scene::ChangeList()> make,
                        TimePoint now);
     void catch_up(NodeRecord& node, TimePoint now);
 
-    SceneAuthority& authority_;
+    const PublishedScene& scene_;
     SceneEncoder& encoder_;
     scene::BlobStore& blobs_;
     Outbox& outbox_;

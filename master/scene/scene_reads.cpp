@@ -7,19 +7,19 @@
 
 namespace tessera::master {
 
-std::string SceneReads::read(const SessionRecord& session, const wire::ReadScene& request) {
+std::string SceneReads::read(const SessionRecord& session, const wire::ReadScene& request, Version wanted) {
     for (Waiting& waiting : waiting_) {
         if (waiting.session != session.id) continue;
         if (waiting.request.request == request.request) return {};  // sent again after a reconnection
         return "this client reads the scene already: wait for the answer";
     }
-    waiting_.push_back({session.id, request, authority_.pending()});
+    waiting_.push_back({session.id, request, wanted});
     return {};
 }
 
 void SceneReads::tick() {
     std::erase_if(waiting_, [&](Waiting& read) {
-        if (authority_.version().number < read.wanted.number) return false;
+        if (scene_.version().number < read.wanted.number) return false;
         return answer(read);
     });
 }
@@ -38,14 +38,14 @@ SceneReads::Encoded* SceneReads::find(std::uint64_t job) {
 }
 
 void SceneReads::start(Waiting& read, Part part, Version from, std::function<scene::ChangeList()> make) {
-    if (const Encoded* known = find(part, from, authority_.version())) {
+    if (const Encoded* known = find(part, from, scene_.version())) {
         if (const scene::BlobPtr blob = known->blob.lock(); blob || !known->is_done) {
             read.job = known->job;
             return;
         }
     }
     std::erase_if(encoded_, [](const Encoded& encoded) { return encoded.is_done && encoded.blob.expired(); });
-    const Version to = authority_.version();
+    const Version to = scene_.version();
     read.job = encoder_.encode(from, to, std::move(make));
     encoded_.push_back({.job = read.job, .part = part, .from = from, .to = to, .blob = {}});
 }
@@ -63,34 +63,30 @@ bool SceneReads::answer(Waiting& read) {
         }
         read.job = 0;  // its last reader left, or there was no memory for it
     }
-    const Version version = authority_.version(), nothing{version.epoch, 0};
+    const Version version = scene_.version(), nothing{version.epoch, 0};
     if (session->role == net::Role::Viewer) {
         if (read.request.known == version) {
             answer_now(read, {.from = version, .to = version, .entries = {}, .state_hash = {}});
             return true;
         }
-        const auto make = [scene = authority_.published_scene()] {
-            return scene::snapshot(view::camera_scene(scene));
-        };
-        if (authority_.scene().objects().size() <= SceneEncoder::ShortList) {
+        const auto make = [scene = scene_.scene()] { return scene::snapshot(view::camera_scene(scene)); };
+        if (scene_.scene().objects().size() <= SceneEncoder::ShortList) {
             answer_now(read, make());
             return true;
         }
         start(read, Part::Cameras, nothing, make);
     } else {
-        auto changes = authority_.since(read.request.known);
-        const bool is_short = changes ? changes->entries.size() <= SceneEncoder::ShortList
-                                      : authority_.scene().objects().size() <= SceneEncoder::ShortList;
-        if (is_short) {
-            answer_now(read, changes ? *changes : authority_.snapshot());
+        const auto missed = scene_.since(read.request.known);
+        const std::size_t size = missed ? missed->max_size() : scene_.scene().objects().size();
+        if (size <= SceneEncoder::ShortList) {
+            answer_now(read, missed ? missed->list() : scene_.snapshot());
             return true;
         }
-        if (changes) {
-            const auto shared = std::make_shared<const scene::ChangeList>(std::move(*changes));
-            start(read, Part::Everything, read.request.known, [shared] { return *shared; });
+        if (missed) {
+            start(read, Part::Everything, read.request.known, [missed] { return missed->list(); });
         } else {
             start(read, Part::Everything, nothing,
-                  [scene = authority_.published_scene()] { return scene::snapshot(scene); });
+                  [scene = scene_.scene()] { return scene::snapshot(scene); });
         }
     }
     // Encoded for another reader before.

@@ -7,7 +7,7 @@
 
 #include "master/peers/outbox.h"
 #include "master/peers/session_table.h"
-#include "master/scene/scene_authority.h"
+#include "master/scene/published_scene.h"
 #include "master/scene/scene_encoder.h"
 
 namespace tessera::master {
@@ -17,12 +17,12 @@ namespace tessera::master {
 // only.
 class SceneReads {
   public:
-    SceneReads(SceneAuthority& authority, SceneEncoder& encoder, scene::BlobStore& blobs,
+    SceneReads(const PublishedScene& scene, SceneEncoder& encoder, scene::BlobStore& blobs,
                SessionTable& sessions, Outbox& outbox)
-        : authority_(authority), encoder_(encoder), blobs_(blobs), sessions_(sessions), outbox_(outbox) {}
+        : scene_(scene), encoder_(encoder), blobs_(blobs), sessions_(sessions), outbox_(outbox) {}
 
-    // Returns "" or the problem: a member reads once at a time.
-    std::string read(const SessionRecord& session, const wire::ReadScene& request);
+    // `wanted`: the version with all edits so far. Returns "" or the problem: a member reads once at a time.
+    std::string read(const SessionRecord& session, const wire::ReadScene& request, Version wanted);
     void take(const EncodedScene& made);
     void tick();  // after every published version
     void left(SessionId session);
@@ -54,7 +54,7 @@ class SceneReads {
     Encoded* find(std::uint64_t job);
     void start(Waiting& read, Part part, Version from, std::function<scene::ChangeList()> make);
 
-    SceneAuthority& authority_;
+    const PublishedScene& scene_;
     SceneEncoder& encoder_;
     scene::BlobStore& blobs_;
     SessionTable& sessions_;

@@ -29,16 +29,6 @@ void SessionJournal::closed() {
     is_open_ = false;
 }
 
-void SessionJournal::job_started(wire::SavedView view) {
-    if (auto written = journal_->job_started(std::move(view)); !written) throw written.error();
-}
-
-// A job whose end is not recorded is rendered again after a restart.
-void SessionJournal::job_ended(const session::JobName& job) {
-    if (auto written = journal_->job_ended(job); !written)
-        events_({wire::Severity::Error, written.error().what()});
-}
-
 void SessionJournal::tick() {
     const auto result = writer_.take_result();
     if (!result) return;

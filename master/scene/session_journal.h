@@ -11,9 +11,8 @@
 
 namespace tessera::master {
 
-// A scene session on disk: a journal of its changes and, every `interval`, a checkpoint with the films of its
-// views. Used in the render master's loop, which it blocks no longer than copying the scene's map takes: files are
-// written by another thread.
+// A scene session on disk: a journal of its changes and, every `interval`, a checkpoint with the films of its views. The
+// journal is used where the authority is used (authority_thread.h); checkpoints are written by another thread.
 class SessionJournal {
   public:
     // Locks the folder, restores `authority` from it and records from now on. Throws Error with the folder's name if
@@ -25,11 +24,11 @@ class SessionJournal {
     // The scene was opened: edits are recorded. Throws Error{Io}.
     void opened(const wire::RecordedTitle& scene);
     void closed();
-    // Records a job of the open scene. Throws Error{Io}.
-    void job_started(wire::SavedView view);
-    void job_ended(const session::JobName& job);
+    // A job of the open scene. One whose end cannot be recorded is rendered again after a restart.
+    Expected<void> job_started(wire::SavedView view) { return journal_->job_started(std::move(view)); }
+    Expected<void> job_ended(const session::JobName& job) { return journal_->job_ended(job); }
 
-    void tick();
+    void tick();  // at any time
     bool is_writing() const { return writer_.busy(); }
     bool last_write_failed() const { return last_write_failed_; }
     // True when there are new edits or new film (`film_progress` differs), and none is being written.

@@ -1,25 +1,11 @@
 #include "master/scene/transaction.h"
 
-#include <atomic>
-
 #include "mediator/scene/fields.h"
 #include "mediator/scene/referrers.h"
 
 namespace tessera::master {
 
 namespace {
-
-// Copy-on-write: before `shared` is changed, copies it if another thread may still read it.
-template <class T>
-void own(std::shared_ptr<T>& shared) {
-    if (!shared) {
-        shared = std::make_shared<T>();
-    } else if (shared.use_count() > 1) {
-        shared = std::make_shared<T>(*shared);
-    } else {
-        std::atomic_thread_fence(std::memory_order_acquire);  // after the reads of the last other owner
-    }
-}
 
 template <class Visit>
 void for_each_bit(scene::FieldMask mask, const Visit& visit) {
@@ -57,11 +43,6 @@ void record_writers(TransactionChange& change, const scene::ObjectChange& step, 
 
 }  // namespace
 
-TransactionChanges::Map& TransactionChanges::to_change() {
-    own(changes_);
-    return *changes_;
-}
-
 WriterPtr WriterTable::of(ObjectId id, std::uint32_t field) const {
     const ObjectWriters& object = of(id);
     const auto it = object.find(field);
@@ -70,20 +51,20 @@ WriterPtr WriterTable::of(ObjectId id, std::uint32_t field) const {
 
 const ObjectWriters& WriterTable::of(ObjectId id) const {
     static const ObjectWriters None;
-    const auto it = writers_.find(id);
-    return it == writers_.end() ? None : *it->second;
+    const auto group = groups_.find(group_of(id));
+    if (group == groups_.end()) return None;
+    const auto object = group->second->find(id);
+    return object == group->second->end() ? None : object->second;
 }
 
 void WriterTable::set(ObjectId id, std::uint32_t field, const WriterPtr& writer) {
-    const auto it = writer ? writers_.try_emplace(id).first : writers_.find(id);
-    if (it == writers_.end()) return;
-    own(it->second);
     if (writer) {
-        (*it->second)[field] = writer;
-        return;
+        groups_[group_of(id)].edit()[id][field] = writer;
+    } else if (of(id).contains(field)) {
+        ObjectWriters& writers = groups_.at(group_of(id)).edit().at(id);
+        writers.erase(field);
+        if (writers.empty()) (void)take(id);
     }
-    it->second->erase(field);
-    if (it->second->empty()) writers_.erase(it);
 }
 
 void WriterTable::set(ObjectId id, const ObjectWriters& writers) {
@@ -91,8 +72,12 @@ void WriterTable::set(ObjectId id, const ObjectWriters& writers) {
 }
 
 ObjectWriters WriterTable::take(ObjectId id) {
-    auto node = writers_.extract(id);
-    return node ? *node.mapped() : ObjectWriters();
+    const auto group = groups_.find(group_of(id));
+    if (group == groups_.end() || !group->second->contains(id)) return {};
+    Group& objects = group->second.edit();
+    ObjectWriters writers = std::move(objects.extract(id).mapped());
+    if (objects.empty()) groups_.erase(group);
+    return writers;
 }
 
 bool can_extend(const Transaction& transaction, const std::vector<scene::ObjectChange>& changes,

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mediator/base/copy_on_write.h"
 #include "mediator/scene/inverse.h"
 
 namespace tessera::master {
@@ -34,10 +35,10 @@ class TransactionChanges {
   public:
     using Map = std::map<ObjectId, TransactionChange>;
     const Map& all() const { return *changes_; }
-    Map& to_change();
+    Map& to_change() { return changes_.edit(); }
 
   private:
-    std::shared_ptr<Map> changes_ = std::make_shared<Map>();
+    CopyOnWrite<Map> changes_;
 };
 
 enum class Nature : std::uint8_t { Edit, Undo, Redo };  // a redo undoes an undo
@@ -54,7 +55,7 @@ struct Transaction {
     TransactionChanges changes;
 };
 
-// The last writer of each field that was edited.
+// The last writer of each field that was edited. Copies are cheap: they share, copy on write, all groups of objects.
 class WriterTable {
   public:
     WriterPtr of(ObjectId id, std::uint32_t field) const;  // null: none
@@ -62,13 +63,20 @@ class WriterTable {
     void set(ObjectId id, std::uint32_t field, const WriterPtr& writer);
     void set(ObjectId id, const ObjectWriters& writers);
     ObjectWriters take(ObjectId id);
-    void clear() { writers_.clear(); }
-    // By object; copies of the table share unchanged entries.
-    using Map = std::map<ObjectId, std::shared_ptr<ObjectWriters>>;
-    const Map& all() const { return writers_; }
+    void clear() { groups_.clear(); }
+    // Calls visit(ObjectId, const ObjectWriters&) in the order of the ids.
+    template <class Visit>
+    void for_each(const Visit& visit) const {
+        for (const auto& [number, group] : groups_) {
+            for (const auto& [id, writers] : *group) visit(id, writers);
+        }
+    }
 
   private:
-    Map writers_;
+    using Group = std::map<ObjectId, ObjectWriters>;  // objects of neighbouring ids
+    static std::uint64_t group_of(ObjectId id) { return id.value / 128; }
+
+    std::map<std::uint64_t, CopyOnWrite<Group>> groups_;
 };
 
 // True if the changes can be merged into the transaction, so that one undo reverts both. False if others have

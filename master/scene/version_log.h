@@ -1,57 +1,39 @@
 #pragma once
 
-#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "master/scene/published_scene.h"
 #include "mediator/scene/inverse.h"
 
 namespace tessera::master {
 
-// The published state of the scene, and the objects that each of the latest versions touched. The published scene is
-// never copied: it is the head with the unpublished objects' previous values. Pure.
+// The published version of the scene, and the changes of the head since then. Pure.
 class VersionLog {
   public:
-    // How much is remembered for queries of changes since a version: about a minute at 60 versions per second.
-    static constexpr std::size_t MaxVersions = 4096;
-    static constexpr std::size_t MaxTouched = std::size_t{1} << 18;
-
-    // `version` is that of `scene`.
-    explicit VersionLog(const scene::Scene& scene);
+    explicit VersionLog(const scene::Scene& scene) : published_(scene) {}  // published at its version
 
     void changed(const std::vector<scene::ObjectChange>& changes);  // in the head, not published yet
     bool has_unpublished() const { return unpublished_; }
+    std::size_t unpublished_objects() const { return before_.size(); }
 
-    Version version() const { return version_; }
-    Version pending() const { return {version_.epoch, version_.number + (unpublished_ ? 1 : 0)}; }
-    Hash128 state_hash() const { return state_hash_; }  // of the published scene
+    const PublishedScene& published() const { return published_; }
+    Version pending() const;  // the version of the head once it is published
 
-    // All changes since the last version, one entry per object; empty if the edits cancel each other. Requires
-    // unpublished changes.
-    scene::ChangeList publish(const scene::Scene& head);
-
-    // Of the published scene, without unpublished edits.
-    scene::ChangeList snapshot(const scene::Scene& head) const;
-    scene::Scene published(const scene::Scene& head) const;  // the published scene itself
-    // Changes from `known` to the published scene; none if `known` is unknown or too old.
-    std::optional<scene::ChangeList> since(Version known, const scene::Scene& head) const;
+    // Publishes the head at pending(), and sets its version. The list has all changes since the last version, one entry
+    // per object; it is empty if the edits cancel each other. Requires unpublished changes.
+    scene::ChangeList publish(scene::Scene& head);
 
   private:
-    const scene::Object* published(ObjectId id, const scene::Scene& head) const;
-
-    struct Touched {
-        ObjectId id;
-        scene::FieldMask mask = 0;
-        std::optional<scene::ObjectKind> was;  // its kind before the version; none: it did not exist
-    };
-    Version version_;
-    Hash128 state_hash_;
+    PublishedScene published_;
     bool unpublished_ = false;
     std::map<ObjectId, std::shared_ptr<const scene::Object>> before_;  // of the unpublished changes
-    std::deque<std::vector<Touched>> log_;                             // the last is of version_
-    std::size_t log_size_ = 0;
 };
+
+// Appends what leads from an object of kind `was` (none: there is no object) to `now`, whose fields of the mask differ.
+void add_entries(ObjectId id, std::optional<scene::ObjectKind> was, scene::FieldMask mask,
+                 const scene::Object* now, std::vector<scene::Entry>& entries);
 
 }  // namespace tessera::master

@@ -140,7 +140,7 @@ bool WakeSignal::take() {
     return true;
 }
 
-void wait_readable(std::array<zmq::socket_t, 2>& sockets, const WakeSignal& signal, TimePoint deadline) {
+void wait_readable(std::array<zmq::socket_t, 2>& sockets, WakeSignal& signal, TimePoint deadline) {
     const TimePoint now = std::chrono::steady_clock::now();
     constexpr std::int64_t LongestWait = 60'000;
     std::int64_t wait = 0;
@@ -154,6 +154,7 @@ void wait_readable(std::array<zmq::socket_t, 2>& sockets, const WakeSignal& sign
                                           {sockets[1].handle(), 0, ZMQ_POLLIN, 0},
                                           {nullptr, signal.descriptor(), ZMQ_POLLIN, 0}}};
     zmq_poll(items.data(), static_cast<int>(items.size()), static_cast<long>(wait));
+    if ((items[2].revents & ZMQ_POLLIN) != 0) signal.seen();
 }
 
 }  // namespace tessera::net

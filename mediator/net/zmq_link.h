@@ -65,6 +65,9 @@ class WakeSignal {
     WakeSignal& operator=(const WakeSignal&) = delete;
     void raise();  // thread-safe
     bool take();   // true if raised since the last take()
+    // Its descriptor is readable: the thread that raises it may have been interrupted before it set the flag, and until
+    // it runs again every wait would end at once.
+    void seen() { raised_ = true; }
     int descriptor() const { return descriptor_; }
 
   private:
@@ -73,6 +76,6 @@ class WakeSignal {
 };
 
 // Waits until a socket is readable, the signal is raised or the deadline has passed.
-void wait_readable(std::array<zmq::socket_t, 2>& sockets, const WakeSignal& signal, TimePoint deadline);
+void wait_readable(std::array<zmq::socket_t, 2>& sockets, WakeSignal& signal, TimePoint deadline);
 
 }  // namespace tessera::net

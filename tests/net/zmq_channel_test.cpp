@@ -2,7 +2,9 @@
 #include "mediator/net/zmq_channel.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <array>
 #include <thread>
 #include <zmq.hpp>
 
@@ -56,6 +58,25 @@ TEST(ZmqAddresses, AreValidatedAndLoopbackIsDetected) {
           "tcp://h:99999999999", "tcp://h:1x", "tcp://h:-1", "udp://h:1", "inproc://", "h:1"}) {
         EXPECT_EQ(code_of([&] { addresses_of(bad); }), ErrorCode::InvalidInput) << bad;
     }
+}
+
+// The thread that raises it was interrupted between the descriptor and its flag.
+TEST(WakeSignal, DoesNotSpinWhenOnlyItsDescriptorIsReadable) {
+    zmq::context_t context;
+    std::array<zmq::socket_t, 2> sockets{zmq::socket_t(context, zmq::socket_type::dealer),
+                                         zmq::socket_t(context, zmq::socket_type::dealer)};
+    WakeSignal signal;
+    const std::uint64_t one = 1;
+    ASSERT_EQ(::write(signal.descriptor(), &one, sizeof one), static_cast<ssize_t>(sizeof one));
+    wait_readable(sockets, signal, std::chrono::steady_clock::now() + std::chrono::seconds(60));
+    EXPECT_TRUE(signal.take()) << "the wait ended for it";
+    const TimePoint before = std::chrono::steady_clock::now();
+    wait_readable(sockets, signal, before + std::chrono::milliseconds(50));
+    EXPECT_GE(std::chrono::steady_clock::now() - before, std::chrono::milliseconds(50))
+        << "it is not readable";
+    EXPECT_FALSE(signal.take());
+    signal.raise();
+    EXPECT_TRUE(signal.take());
 }
 
 TEST(ZmqChannel, RefusesTheNetworkWithoutKeys) {

@@ -31,8 +31,8 @@ TEST_F(ManyEditors, ReplicasReachTheHeadVersion) {
     CounterRandom random(7);
     auto list = members(4, 1);
     Scene follower, late;
-    ASSERT_TRUE(follower.apply(authority.snapshot()));
-    ASSERT_TRUE(late.apply(authority.snapshot()));
+    ASSERT_TRUE(follower.apply(authority.published().snapshot()));
+    ASSERT_TRUE(late.apply(authority.published().snapshot()));
     int accepted = 0, refused = 0, undone = 0;
     for (int i = 0; i < 1500; ++i) {
         RandomMember& who = list[random.below(list.size())];
@@ -68,9 +68,9 @@ TEST_F(ManyEditors, ReplicasReachTheHeadVersion) {
         ASSERT_EQ(follower.state_hash(), head);
         ASSERT_TRUE(validate(follower).empty());
         if (random.below(10) != 0) continue;
-        const auto catch_up = authority.since(late.version());
+        const auto catch_up = authority.published().since(late.version());
         ASSERT_TRUE(catch_up);
-        const auto caught_up = late.apply(*catch_up);
+        const auto caught_up = late.apply(catch_up->list());
         ASSERT_TRUE(caught_up) << caught_up.error().what();
         ASSERT_TRUE(difference(late, follower).entries.empty());
     }
@@ -82,34 +82,34 @@ TEST_F(ManyEditors, ReplicasReachTheHeadVersion) {
 TEST_F(ManyEditors, SnapshotsAndCatchingUpHoldWhatIsPublishedOnly) {
     auto list = members(2, 2);
     Scene replica, early;
-    ASSERT_TRUE(early.apply(authority.snapshot()));
+    ASSERT_TRUE(early.apply(authority.published().snapshot()));
     for (int i = 0; i < 40; ++i) act(list[static_cast<std::size_t>(i) % 2], 0);
     authority.publish();
     const Version published = authority.version();
-    ASSERT_TRUE(replica.apply(authority.snapshot()));
+    ASSERT_TRUE(replica.apply(authority.published().snapshot()));
     for (int i = 0; i < 40; ++i) {
         act(list[static_cast<std::size_t>(i) % 2], 0);
         Scene joined;
-        const auto snapshot = authority.snapshot();
+        const auto snapshot = authority.published().snapshot();
         ASSERT_TRUE(joined.apply(snapshot)) << "its hash is its own";
         ASSERT_TRUE(difference(replica, joined).entries.empty());
         ASSERT_EQ(joined.version(), published);
-        ASSERT_TRUE(authority.since(published));
-        EXPECT_TRUE(authority.since(published)->entries.empty());
+        ASSERT_TRUE(authority.published().since(published));
+        EXPECT_TRUE(authority.published().since(published)->list().entries.empty());
         Scene caught_up = early;
-        ASSERT_TRUE(caught_up.apply(*authority.since(early.version())));
+        ASSERT_TRUE(caught_up.apply(authority.published().since(early.version())->list()));
         ASSERT_TRUE(difference(replica, caught_up).entries.empty());
     }
     ASSERT_TRUE(authority.has_unpublished());
     EXPECT_NE(authority.scene().state_hash(), replica.state_hash());
-    EXPECT_EQ(authority.state_hash(), replica.state_hash());
+    EXPECT_EQ(authority.published().state_hash(), replica.state_hash());
 }
 
 TEST_F(ManyEditors, UnknownVersionsAreRejected) {
-    EXPECT_TRUE(authority.since({42, 1}));
-    EXPECT_FALSE(authority.since({42, 0}));
-    EXPECT_FALSE(authority.since({42, 2})) << "not published yet";
-    EXPECT_FALSE(authority.since({41, 1})) << "of a master before";
+    EXPECT_TRUE(authority.published().since({42, 1}));
+    EXPECT_FALSE(authority.published().since({42, 0}));
+    EXPECT_FALSE(authority.published().since({42, 2})) << "not published yet";
+    EXPECT_FALSE(authority.published().since({41, 1})) << "of a master before";
 }
 
 TEST_F(ManyEditors, UndoingEverythingInReverseOrderLeadsBackToTheStart) {

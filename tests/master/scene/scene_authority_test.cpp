@@ -27,7 +27,7 @@ struct SceneAuthorityTest : testing::Test {
 
 TEST_F(SceneAuthorityTest, NumbersVersionsAndMakesChangeListsForReplicas) {
     Scene replica;
-    ASSERT_TRUE(replica.apply(authority.snapshot()));
+    ASSERT_TRUE(replica.apply(authority.published().snapshot()));
     const auto created = submit({Create{id(0), Light{.name = "sun"}}});
     ASSERT_TRUE(created.accepted) << created.problems.at(0);
     EXPECT_EQ(created.version, (Version{42, 2}));

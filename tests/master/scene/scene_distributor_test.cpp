@@ -29,7 +29,7 @@ struct SceneDistributorTest : AuthorityFixture {
         made.push_back(std::move(encoded));
         has_made.notify_one();
     }};
-    SceneDistributor distributor{authority, encoder, store, outbox, [](const Event&) {}};
+    SceneDistributor distributor{authority.published(), encoder, store, outbox, [](const Event&) {}};
     Member ann = join(1, "ann");
     NodeRecord& node = nodes.add(NodeId{1}, 1, 1, "node", wire::Hello{}, TimePoint{});
 
