@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Usage: deploy/bench.sh [--docs]
 #
-# Sets up, builds and runs the benchmarks one after the other (about 15 minutes on 2 cores) and writes them as one page,
+# Sets up, builds and runs the benchmarks one after the other (about 25 minutes on 2 cores) and writes them as one page,
 # out/bench/benchmarks.md. Each figure is next to the limit that bounds it. Run it on an otherwise idle machine.
 #   --docs  writes docs/benchmarks.md instead
 set -euo pipefail
@@ -50,6 +50,7 @@ run filters.json "$bin/tessera" bench filters -o "$out/filters" --scenes room-1,
     --reference-spp 512 --json
 run backends.txt "$bin/tessera" bench backends --scenes room-1,studio-1,balls:1000000 --spp 4 --repeat 3
 run live.txt "$bin/tessera" bench live
+run wire.txt /usr/bin/python3 tests/bench/wire/wire_bench.py --bin "$bin" --spp 16 --pairs 5 --no-targets
 run displays.txt "$bin/tessera" bench displays
 PYTHONPATH=build/release/python run join.txt /usr/bin/python3 deploy/bench_join.py "$bin"
 

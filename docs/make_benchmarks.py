@@ -39,6 +39,8 @@ TEXTS = [
     ("texture", "Texture filtering", "A checkerboard up to the horizon: error relative to point samples."),
     ("backends", "Back-ends", "All back-ends in turn, with the ratio to the first."),
     ("live", "Live editing", "A master and two nodes as processes with CURVE, `studio-1.glb` at 1280x720."),
+    ("wire", "A cluster on the wire", "Processes with one worker each and CURVE, all on the same cores: against one process, the film of more and more "
+     "nodes, and edits while film fills a line of 1 Gbit/s. Run again with `tests/bench/wire/wire_bench.py`, which has the targets."),
     ("displays", "Display wall", "24 `tessera-display` processes, a master and two null nodes, all on the same cores; the head moves all the "
      "time, so that every frame is new."),
     ("join", "Joining nodes", "A node joins a scene of 100 MB over a link of 1 Gbit/s; a ratio of 1 is the time of the bytes alone."),
