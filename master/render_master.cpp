@@ -158,8 +158,9 @@ void RenderMaster::serve_messages(TimePoint begun, const std::stop_token& stop) 
         net::Message message = intake_.take();
         const std::string user = message.user;
         const Duration before = LoopMonitor::thread_cpu_time();
+        message_kind_ = "a malformed message";
         receive(std::move(message), now);
-        monitor_.ran("a message", LoopMonitor::thread_cpu_time() - before);
+        monitor_.ran(message_kind_, LoopMonitor::thread_cpu_time() - before);
         const TimePoint after = clock_.now();
         intake_.used(user, after - now);
         now = after;
@@ -216,6 +217,7 @@ void RenderMaster::control(net::Message& message, TimePoint now) {
     outbox_.bytes.control += message.bytes.size();
     auto decoded = wire::decode_control(message.bytes);
     if (!decoded) return drop(message, decoded.error().what());
+    message_kind_ = wire::table::Control::name(*decoded);
     if (!allowed(message.role, *decoded)) {
         outbox_.control(message.peer, wire::Refusal{std::string("the role ") + net::name(message.role) +
                                                     " may not do this: use a key with another role"});
@@ -262,7 +264,7 @@ void RenderMaster::serve_held_messages(TimePoint now) {
             SessionRecord::HeldMessage held = std::move(session->held.front());
             session->held.pop_front();
             session->held_bytes -= held.byte_size;
-            guard_.run("a message that waited",
+            guard_.run(wire::table::Control::name(held.message),
                        [&] { from_client(*session, held.message, held.byte_size, now); });
         }
     }
@@ -287,6 +289,7 @@ void RenderMaster::bulk(net::Message& message, TimePoint now) {
     }
     auto decoded = wire::decode_bulk(message.bytes);
     if (!decoded) return drop(message, decoded.error().what());
+    message_kind_ = wire::table::Bulk::name(*decoded);
     if (!allowed(message.role, *decoded)) return drop(message, "not allowed for its role");
     if (const auto* greeting = std::get_if<wire::BulkHello>(&*decoded)) return bulk_hello(message, *greeting);
     if (NodeRecord* node = nodes_.by_bulk(message.peer); node && node->user == message.user) {

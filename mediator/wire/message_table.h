@@ -47,6 +47,10 @@ struct MessageTable {
         constexpr Senders From[] = {Rows::senders...};
         return From[message.index()];
     }
+    static constexpr std::string_view name(const Message& message) {
+        constexpr std::string_view Names[] = {Rows::alternative().name...};
+        return Names[message.index()];
+    }
     // Calls `use(message, name)` with a default message of each row.
     static void for_each(const auto& use) {
         (use(Message(typename Rows::Type{}), Rows::alternative().name), ...);

@@ -1,0 +1,250 @@
+#include "tests/fuzz/cluster_fuzz.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <future>
+#include <map>
+#include <thread>
+
+#include "client/render.h"
+#include "mediator/frame/resolve.h"
+#include "mediator/scene/fields.h"
+#include "tests/cluster/cluster_scene.h"
+#include "tests/cluster/loopback_cluster.h"
+#include "tests/fuzz/random_peer.h"
+
+namespace tessera::test {
+
+namespace {
+
+using namespace scene;
+using namespace std::chrono_literals;
+
+constexpr net::Role Roles[] = {net::Role::Viewer, net::Role::Editor, net::Role::Node, net::Role::Operator};
+
+session::ViewRequest honest_request() {
+    session::ViewRequest request{.stop = {.spp = 16}, .wait_limit = 120s, .film = true};
+    request.view.width = 96;
+    request.view.height = 64;
+    request.view.window = {0, 0, 96, 64};
+    request.view.camera = view::perspective(glm::dmat4(1.0), 0.8, 1.5);
+    request.view.channels = {frame::Channel::Radiance, frame::Channel::Albedo};
+    return request;
+}
+
+class Fuzz {
+  public:
+    explicit Fuzz(const FuzzSettings& settings)
+        : settings_(settings), random_(settings.seed, 1), cluster_([](master::MasterSettings& master) {
+              master.stuck = {.allowance = 1s, .predicted_times = 20, .first_film = 5s, .building = 5s};
+              master.memory_limit = std::uint64_t{1} << 30;
+              master.views.orphan_limit = 1s;
+          }) {}
+
+    FuzzReport run() {
+        expected_ = honest_hash();
+        for (int i = 0; i < 2; ++i) cluster_.add_node("null", {}, 5us);
+        while (report_.messages < settings_.messages && report_.violations.empty()) {
+            edit_among_peers();
+            if (report_.violations.empty()) render_among_peers();
+        }
+        return report_;
+    }
+
+  private:
+    void violated(const std::string& what) {
+        report_.violations.push_back(what);
+        std::fprintf(stderr, "seed %llu: %s\n", static_cast<unsigned long long>(settings_.seed),
+                     what.c_str());
+    }
+    static std::string honest_hash() {
+        LoopbackCluster honest;
+        honest.add_node("null");
+        const auto session = honest.batch(std::make_shared<BlobStore>());
+        return to_hex(frame::film_hash(*client::render(*session, honest_request(), {}, {}).film()));
+    }
+
+    void add_peers(bool join, bool forge) {
+        for (std::size_t i = 0; i < settings_.peers; ++i) {
+            const net::Role role = Roles[i % std::size(Roles)];
+            const std::string name = std::string(net::name(role)) + " " + std::to_string(i);
+            peers_.push_back(std::make_unique<RandomPeer>(
+                cluster_.channel(role, name), RandomPeer::Settings{role, name, join, forge, honest_id_},
+                random_.below(~0ull)));
+        }
+    }
+    // As many messages as the peers get rid of; `done` ends it earlier.
+    void send(std::uint64_t messages, const std::function<bool()>& done) {
+        std::uint64_t idle = 0;
+        const auto total = [&] {
+            std::uint64_t sent = 0;
+            for (const auto& peer : peers_) sent += peer->sent();
+            return sent;
+        };
+        while (total() < messages && !done()) {
+            RandomPeer& peer = *peers_[random_.below(peers_.size())];
+            if (peer.act()) {
+                idle = 0;
+            } else if (++idle > peers_.size()) {
+                std::this_thread::sleep_for(1ms);
+                idle = 0;
+            }
+        }
+        report_.messages += total();
+        for (const auto& peer : peers_) report_.reached += peer->reached();
+    }
+    void remove_peers() {
+        for (const auto& peer : peers_) {
+            if (random_.below(2) == 0) peer->say_goodbye();  // others vanish
+        }
+        peers_.clear();
+    }
+
+    // ---- the live scene ----
+    void edit_among_peers() {
+        const auto blobs = std::make_shared<BlobStore>();
+        auto ann = cluster_.member("ann", blobs);
+        const ObjectId first = ann->new_id();
+        for (int i = 0; i < 3; ++i) (void)ann->new_id();
+        if (!ann->submit(scene_entries(first, *blobs)).accepted) return violated("the scene is refused");
+        honest_id_ = ann->new_id();
+        std::vector<ObjectId> mine{honest_id_};
+        for (int i = 0; i < 7; ++i) mine.push_back(ann->new_id());
+        std::vector<Entry> creations;
+        for (const ObjectId id : mine) creations.push_back(Create{id, Material{.name = "mine"}});
+        if (!ann->submit(std::move(creations)).accepted) return violated("an honest edit is refused");
+        ann->lock(mine);
+
+        add_peers(true, true);
+        std::atomic<bool> stop = false;
+        std::map<ObjectId, float> acknowledged;
+        auto editing = std::async(std::launch::async, [&] { edit(*ann, mine, acknowledged, stop); });
+        send(settings_.messages / 8 + 1, [] { return false; });
+        stop = true;
+        if (editing.wait_for(60s) != std::future_status::ready) {
+            violated("an honest edit got no answer for 60 s");
+            std::quick_exit(1);  // its thread cannot be ended
+        }
+        try {
+            editing.get();
+            check_scene(*ann, acknowledged);
+            remove_peers();
+            check_nodes(*ann);
+            ann->close_scene();
+            check_units(*ann);
+        } catch (const std::exception& error) {
+            violated(std::string("the honest editor: ") + error.what());
+        }
+    }
+    void edit(client::Session& ann, const std::vector<ObjectId>& mine,
+              std::map<ObjectId, float>& acknowledged, const std::atomic<bool>& stop) {
+        for (float step = 0.0f; !stop; step += 1.0f) {
+            const ObjectId id = mine[static_cast<std::size_t>(step) % mine.size()];
+            const float roughness = step / 1000.0f - std::floor(step / 1000.0f);
+            const auto result = ann.submit({Update{id, Fields<Material>(&Material::roughness).bits(),
+                                                   Material{.roughness = roughness}}});
+            if (!result.accepted) throw Error(ErrorCode::Refused, result.problems.at(0));
+            acknowledged[id] = roughness;
+            ++report_.edits;
+        }
+    }
+    // No acknowledged edit is lost, and every replica is the authority's scene.
+    void check_scene(client::Session& ann, const std::map<ObjectId, float>& acknowledged) {
+        ann.refresh();
+        for (const auto& [id, roughness] : acknowledged) {
+            const auto* material = ann.scene().find_as<Material>(id);
+            if (material == nullptr || material->roughness != roughness)
+                violated("an acknowledged edit of object " + std::to_string(id.value) + " is lost");
+        }
+        const auto late = cluster_.member("late", std::make_shared<BlobStore>());
+        for (int i = 0; i < 100 && late->scene().version() != ann.scene().version(); ++i) {
+            ann.refresh();
+            late->refresh();
+        }
+        if (late->scene().state_hash() != ann.scene().state_hash())
+            violated("a late reader has another scene than one who followed all changes");
+    }
+    template <class Settled>
+    static session::ClusterStatus status_when(client::Session& session, const Settled& settled) {
+        session::ClusterStatus status = session.status();
+        for (int i = 0; i < 1000 && !settled(status); ++i) {
+            std::this_thread::sleep_for(10ms);
+            status = session.status();
+        }
+        return status;
+    }
+    // Once the peers are gone, which takes until their timeouts.
+    void check_nodes(client::Session& session) {
+        const session::ClusterStatus status = status_when(session, [](const session::ClusterStatus& at) {
+            return at.sessions == 1 && std::ranges::all_of(at.nodes, [&](const auto& node) {
+                       return node.version == at.version;
+                   });
+        });
+        if (status.sessions != 1)
+            violated(std::to_string(status.sessions - 1) + " clients that are gone are still there");
+        if (status.nodes.size() != 2) violated(std::to_string(status.nodes.size()) + " nodes instead of 2");
+        for (const session::NodeStatus& node : status.nodes) {
+            if (node.version != status.version)
+                violated("node " + node.summary.name + " does not reach the published version");
+        }
+        if (status.caught_exceptions != 0)
+            violated("the master caught " + std::to_string(status.caught_exceptions) + " exceptions");
+        report_.longest_step_cpu = std::max(report_.longest_step_cpu, status.loop.longest_cpu_seconds);
+        report_.longest_part = status.loop.longest_part;
+    }
+    // No view is open any more.
+    void check_units(client::Session& session) {
+        const auto ended = [](const session::UnitCounts& units) {
+            return units.merged + units.duplicate + units.cancelled + units.refused + units.lost;
+        };
+        const session::UnitCounts units = session.status().units;
+        if (units.issued + units.reissued != ended(units))
+            violated("of " + std::to_string(units.issued + units.reissued) + " units " +
+                     std::to_string(ended(units)) + " are accounted for");
+    }
+
+    // ---- a frame of an exclusive scene ----
+    void render_among_peers() {
+        const auto session = cluster_.batch(std::make_shared<BlobStore>());
+        add_peers(false, false);
+        auto rendering = std::async(std::launch::async,
+                                    [&] { return client::render(*session, honest_request(), {}, {}); });
+        const auto done = [&] { return rendering.wait_for(0s) == std::future_status::ready; };
+        send(settings_.messages / 8 + 1, done);
+        if (rendering.wait_for(120s) != std::future_status::ready) {
+            violated("an honest frame did not end within 120 s");
+            std::quick_exit(1);
+        }
+        try {
+            const client::ViewResult result = rendering.get();
+            if (result.summary.outcome != session::Outcome::Complete) {
+                violated("the honest frame: " + result.summary.message);
+            } else if (to_hex(frame::film_hash(*result.film())) != expected_) {
+                violated("the honest frame has other bits");
+            }
+            ++report_.frames;
+            remove_peers();
+        } catch (const std::exception& error) {
+            violated(std::string("the honest frame: ") + error.what());
+        }
+    }
+
+    FuzzSettings settings_;
+    CounterRandom random_;
+    LoopbackCluster cluster_;
+    std::vector<std::unique_ptr<RandomPeer>> peers_;
+    ObjectId honest_id_{};
+    std::string expected_;
+    FuzzReport report_;
+};
+
+}  // namespace
+
+FuzzReport fuzz_cluster(const FuzzSettings& settings) {
+    return Fuzz(settings).run();
+}
+
+}  // namespace tessera::test

@@ -1,0 +1,29 @@
+// Fuzzes a cluster in this process. The same seed sends the same messages.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "tests/fuzz/cluster_fuzz.h"
+
+int main(int count, char** words) {
+    tessera::test::FuzzSettings settings;
+    CLI::App app(
+        "Sends valid messages of every role, in any order and with any values, to a master with honest nodes "
+        "and clients, "
+        "and checks that they are not harmed. Exit code 1: they were; the seed repeats the messages.");
+    app.add_option("--seed", settings.seed, "of the messages")->capture_default_str();
+    app.add_option("--messages", settings.messages, "to send at least")->capture_default_str();
+    app.add_option("--peers", settings.peers, "that send them; every fourth has the same role")
+        ->capture_default_str();
+    CLI11_PARSE(app, count, words);
+    const tessera::test::FuzzReport report = tessera::test::fuzz_cluster(settings);
+    const auto number = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
+    std::printf(
+        "seed %llu: %llu messages: %llu edits and %llu requests accepted, %llu frames, %llu units; "
+        "%llu honest edits, %llu honest frames; a step of the loop took %.1f ms at most (%s)\n",
+        number(settings.seed), number(report.messages), number(report.reached.edits),
+        number(report.reached.requests), number(report.reached.frames), number(report.reached.units),
+        number(report.edits), number(report.frames), 1e3 * report.longest_step_cpu,
+        report.longest_part.c_str());
+    for (const std::string& violation : report.violations) std::printf("violated: %s\n", violation.c_str());
+    return report.violations.empty() ? 0 : 1;
+}
