@@ -70,7 +70,15 @@ void SessionService::submit(SessionRecord& session, scene::Edit edit, std::uint6
         return refuse_edit(session, edit.sequence,
                            "too many edits wait for their blobs: send the blobs first");
     }
-    session.edits.push_back({std::nullopt, std::move(edit), message_bytes});
+    if (!session.edits.empty()) {  // it has to wait
+        const wire::EditSize size{edit.entries.size(), edit.entries.size() * sizeof(scene::Entry)};
+        if (std::string problem = edit_problem(size);
+            !problem.empty()) {  // its turn to be answered will come
+            edit = {.session = session.id, .sequence = edit.sequence, .entries = {}};
+            return session.edits.push_back({.edit = std::move(edit), .refusal = std::move(problem)});
+        }
+    }
+    session.edits.push_back({.edit = std::move(edit), .bytes = message_bytes});
     advance(session, now);
 }
 
@@ -81,11 +89,23 @@ void SessionService::submit(SessionRecord& session, const wire::SubmitEditByBlob
     }
     scene::Edit placeholder{
         .session = session.id, .sequence = message.sequence, .base = message.base, .entries = {}};
-    session.edits.push_back({message.blob, std::move(placeholder), 0});
+    session.edits.push_back({.encoded = message.blob, .edit = std::move(placeholder)});
     advance(session, now);
 }
 
+std::string SessionService::edit_problem(const wire::EditSize& size) const {
+    std::uint64_t waiting = 0;
+    for (const auto& [id, session] : sessions_.all()) {
+        for (const SessionRecord::PendingEdit& pending : session.edits)
+            waiting += pending.edit.entries.size();
+    }
+    return scene_.memory_problem(size.bytes + waiting * sizeof(scene::Entry),
+                                 "an edit of " + std::to_string(size.entries) + " entries");
+}
+
 void SessionService::refuse_edit(SessionRecord& session, std::uint64_t sequence, std::string problem) {
+    const bool is_next = session.edits.empty() || session.edits.front().edit.sequence == sequence;
+    if (is_next) scene_.authority().refused(session.id, sequence, problem);
     outbox_.control(session.control, wire::EditReply{.sequence = sequence,
                                                      .result = {.accepted = false,
                                                                 .version = scene_.authority().version(),
@@ -125,6 +145,8 @@ bool SessionService::blobs_are_here(SessionRecord& session, SessionRecord::Pendi
             want(session, *pending.encoded);
             return false;
         }
+        if (std::string problem = edit_problem(wire::measure_edit(blob->bytes())); !problem.empty())
+            throw Error(ErrorCode::Refused, problem);
         auto decoded = wire::decode_edit(blob->bytes());
         if (!decoded) throw decoded.error();
         decoded->session = pending.edit.session;  // overrides the blob's value
@@ -147,6 +169,7 @@ void SessionService::advance(SessionRecord& session, TimePoint now) {
             continue;
         }
         try {
+            if (!pending.refusal.empty()) throw Error(ErrorCode::Refused, pending.refusal);
             if (!blobs_are_here(session, pending)) break;
         } catch (const Error& error) {
             refuse_edit(session, pending.edit.sequence, error.what());

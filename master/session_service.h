@@ -2,6 +2,7 @@
 
 #include "master/peers/session_table.h"
 #include "master/scene_session.h"
+#include "mediator/wire/envelope.h"
 
 namespace tessera::master {
 
@@ -31,6 +32,8 @@ class SessionService {
     void request_blobs(SessionRecord& session, TimePoint now);
     bool blobs_are_here(SessionRecord& session, SessionRecord::PendingEdit& edit);
     void advance_display(SessionRecord& session, TimePoint now);
+    // Why the decoded edit has no place among those that wait; "" = it has.
+    std::string edit_problem(const wire::EditSize& size) const;
     void refuse_edit(SessionRecord& session, std::uint64_t sequence, std::string problem);
     void admit(SessionRecord& session, const wire::JoinScene& request, TimePoint now);
     std::string busy_text() const;
