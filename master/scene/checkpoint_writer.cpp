@@ -10,8 +10,10 @@
 
 namespace tessera::master {
 
-CheckpointWriter::CheckpointWriter(std::filesystem::path folder)
-    : folder_(std::move(folder)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+CheckpointWriter::CheckpointWriter(std::filesystem::path folder, std::shared_ptr<StoredBlobs> stored)
+    : folder_(std::move(folder)),
+      stored_(std::move(stored)),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 CheckpointWriter::~CheckpointWriter() {
     wait();
@@ -67,6 +69,12 @@ CheckpointResult CheckpointWriter::write(CheckpointJob job) const {
         state.views = std::move(job.views);
         result.byte_size = write_checkpoint(checkpoint_path(folder_, job.number), job.number, state);
         remove_outdated(folder_);
+        if (stored_) {
+            std::set<Hash256> blobs;
+            for (const scene::BlobRef& blob : referenced_blobs(job.authority)) blobs.insert(blob.hash);
+            stored_->written(job.number, std::move(blobs));
+            stored_->remove_unused();
+        }
     } catch (const std::exception& error) {
         result.problem = error.what();
     }

@@ -2,6 +2,7 @@
 
 #include <condition_variable>
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "master/scene/authority_state.h"
+#include "master/scene/stored_blobs.h"
 
 namespace tessera::master {
 
@@ -26,10 +28,11 @@ struct CheckpointResult {
     std::string problem;  // empty = it is on disk, and outdated files are removed
 };
 
-// Writes checkpoints into a session folder, one at a time, on a background thread.
+// Writes checkpoints into a session folder, one at a time, on a background thread, and removes files that are not needed
+// any more.
 class CheckpointWriter {
   public:
-    explicit CheckpointWriter(std::filesystem::path folder);
+    explicit CheckpointWriter(std::filesystem::path folder, std::shared_ptr<StoredBlobs> stored = nullptr);
     ~CheckpointWriter();  // waits for the one being written
     CheckpointWriter(const CheckpointWriter&) = delete;
     CheckpointWriter& operator=(const CheckpointWriter&) = delete;
@@ -44,6 +47,7 @@ class CheckpointWriter {
     CheckpointResult write(CheckpointJob job) const;
 
     const std::filesystem::path folder_;
+    const std::shared_ptr<StoredBlobs> stored_;
     mutable std::mutex mutex_;  // protects the three below
     std::optional<CheckpointJob> job_;
     std::optional<CheckpointResult> result_;

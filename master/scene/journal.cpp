@@ -9,11 +9,12 @@
 namespace tessera::master {
 
 Journal::Journal(const std::filesystem::path& folder, std::shared_ptr<const scene::BlobStore> blobs,
-                 std::uint64_t segment, Duration sync_interval)
+                 std::uint64_t segment, std::shared_ptr<StoredBlobs> stored, Duration sync_interval)
     : folder_(folder),
       blobs_(std::move(blobs)),
       number_(segment),
       segment_(journal_path(folder, segment), segment),
+      stored_(stored ? std::move(stored) : std::make_shared<StoredBlobs>(folder)),
       sync_(sync_interval) {
     sync_.soon(segment_.file());
     sync_folder(folder_);
@@ -44,18 +45,17 @@ Expected<void> Journal::keep_blobs(const std::vector<scene::Entry>& entries) {
     bool wrote = false;
     for (const scene::Entry& entry : entries) {
         for (const scene::BlobRef& reference : scene::referenced_blobs(entry)) {
-            if (kept_.contains(reference.hash)) continue;
+            if (stored_->use(reference.hash, number_)) continue;
             const scene::BlobPtr blob = blobs_->find(reference.hash);
             if (!blob) {
                 return failure(ErrorCode::NotFound,
                                "blob " + to_hex(reference.hash) + " is no longer stored: send it again");
             }
             const std::filesystem::path folder = blobs_path(folder_);
-            if (auto written = scene::write_blob(folder, *blob); !written) return written;
+            if (auto written = stored_->write(*blob); !written) return written;
             const auto file = std::make_shared<FileHandle>(
                 ::open(scene::blob_path(folder, reference).c_str(), O_RDONLY | O_CLOEXEC));
             if (file->descriptor() >= 0) sync_.soon(file);
-            kept_.insert(reference.hash);
             wrote = true;
         }
     }
@@ -74,7 +74,7 @@ Expected<void> Journal::edited(const RecordedEdit& edit) {
 
 void Journal::cleared() {
     (void)append(wire::RecordedClose{});  // unwritten: a restart finds the scene as it was
-    kept_.clear();
+    stored_->scene_closed();
 }
 
 Expected<void> Journal::opened(const wire::RecordedTitle& scene) {

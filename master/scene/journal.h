@@ -1,11 +1,11 @@
 #pragma once
 
-#include <optional>
-#include <set>
+#include <memory>
 
 #include "master/scene/disk_sync.h"
 #include "master/scene/edit_recorder.h"
 #include "master/scene/session_folder.h"
+#include "master/scene/stored_blobs.h"
 
 namespace tessera::master {
 
@@ -17,7 +17,8 @@ class Journal final : public EditRecorder {
   public:
     // Begins with a new segment; throws Error{Io} if it cannot be created.
     Journal(const std::filesystem::path& folder, std::shared_ptr<const scene::BlobStore> blobs,
-            std::uint64_t segment, Duration sync_interval = std::chrono::milliseconds(100));
+            std::uint64_t segment, std::shared_ptr<StoredBlobs> stored = nullptr,
+            Duration sync_interval = std::chrono::milliseconds(100));
 
     Expected<void> joined(const wire::RecordedEditor& editor) override;
     Expected<void> edited(const RecordedEdit& edit) override;
@@ -44,7 +45,7 @@ class Journal final : public EditRecorder {
     std::uint64_t number_;
     JournalFile segment_;
     std::uint64_t earlier_bytes_ = 0;
-    std::set<Hash256> kept_;
+    const std::shared_ptr<StoredBlobs> stored_;
     DiskSync sync_;
 };
 

@@ -18,7 +18,8 @@ std::filesystem::path journal_path(const std::filesystem::path& folder, std::uin
 std::filesystem::path checkpoint_path(const std::filesystem::path& folder, std::uint64_t number);
 std::filesystem::path blobs_path(const std::filesystem::path& folder);
 
-// Creates and locks the folder: throws Error{Unavailable} while another master uses it, Error{Io} if it cannot be
+// Creates and locks the folder, and removes what interrupted writes have left, and damaged files that a recovery kept
+// more than a week ago: throws Error{Unavailable} while another master uses it, Error{Io} if it cannot be
 // used.
 class SessionFolder {
   public:
@@ -33,6 +34,8 @@ class SessionFolder {
 // Removes all but the last two checkpoints, and the journal before the older of them. Files that cannot be removed
 // are left.
 void remove_outdated(const std::filesystem::path& folder);
+
+void remove_leftovers(const std::filesystem::path& folder);  // as above
 
 // Calls fsync on a file or folder; throws Error{Io}.
 void force_to_disk(const std::filesystem::path& path);

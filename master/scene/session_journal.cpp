@@ -12,10 +12,11 @@ SessionJournal::SessionJournal(const std::filesystem::path& folder, Duration int
       authority_(authority),
       events_(std::move(events)),
       recovery_(recover(folder_, authority, *blobs)),
-      writer_(folder) {
+      stored_(std::make_shared<StoredBlobs>(folder)),
+      writer_(folder, stored_) {
     for (const std::string& note : recovery_.notes) events_({wire::Severity::Info, note});
     for (const std::string& loss : recovery_.losses) events_({wire::Severity::Warning, loss});
-    journal_.emplace(folder, std::move(blobs), recovery_.next_segment);
+    journal_.emplace(folder, std::move(blobs), recovery_.next_segment, stored_);
 }
 
 void SessionJournal::opened(const wire::RecordedTitle& scene) {

@@ -49,6 +49,7 @@ class SessionJournal {
     SceneAuthority& authority_;
     EventSink events_;
     Recovery recovery_;
+    std::shared_ptr<StoredBlobs> stored_;
     std::optional<Journal> journal_;
     CheckpointWriter writer_;
     TimePoint last_{};
