@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "master/scene/authority_state.h"
+#include "master/scene/folder_lease.h"
 #include "master/scene/stored_blobs.h"
 
 namespace tessera::master {
@@ -32,7 +33,8 @@ struct CheckpointResult {
 // any more.
 class CheckpointWriter {
   public:
-    explicit CheckpointWriter(std::filesystem::path folder, std::shared_ptr<StoredBlobs> stored = nullptr);
+    explicit CheckpointWriter(std::filesystem::path folder, std::shared_ptr<StoredBlobs> stored = nullptr,
+                              std::shared_ptr<FolderLease> lease = nullptr);
     ~CheckpointWriter();  // waits for the one being written
     CheckpointWriter(const CheckpointWriter&) = delete;
     CheckpointWriter& operator=(const CheckpointWriter&) = delete;
@@ -45,9 +47,11 @@ class CheckpointWriter {
   private:
     void run(const std::stop_token& stop);
     CheckpointResult write(CheckpointJob job) const;
+    void check_lease() const;  // throws Error{Unavailable} when another master records in the folder
 
     const std::filesystem::path folder_;
     const std::shared_ptr<StoredBlobs> stored_;
+    const std::shared_ptr<FolderLease> lease_;
     mutable std::mutex mutex_;  // protects the three below
     std::optional<CheckpointJob> job_;
     std::optional<CheckpointResult> result_;

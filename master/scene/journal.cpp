@@ -9,12 +9,14 @@
 namespace tessera::master {
 
 Journal::Journal(const std::filesystem::path& folder, std::shared_ptr<const scene::BlobStore> blobs,
-                 std::uint64_t segment, std::shared_ptr<StoredBlobs> stored, Duration sync_interval)
+                 std::uint64_t segment, std::shared_ptr<StoredBlobs> stored,
+                 std::shared_ptr<FolderLease> lease, Duration sync_interval)
     : folder_(folder),
       blobs_(std::move(blobs)),
       number_(segment),
       segment_(journal_path(folder, segment), segment),
       stored_(stored ? std::move(stored) : std::make_shared<StoredBlobs>(folder)),
+      lease_(std::move(lease)),
       sync_(sync_interval) {
     sync_.soon(segment_.file());
     sync_folder(folder_);
@@ -35,6 +37,10 @@ Expected<void> Journal::append(const wire::JournalRecord& record) {
         bytes = wire::encode(record);
     } catch (const Error& error) {
         return tl::unexpected(error);
+    }
+    if (lease_) {
+        if (const std::string problem = lease_->problem(); !problem.empty())
+            return failure(ErrorCode::Unavailable, problem);
     }
     if (auto appended = segment_.append(bytes); !appended) return appended;
     sync_.soon(segment_.file());
@@ -90,6 +96,10 @@ Expected<void> Journal::job_ended(const session::JobName& job) {
 }
 
 std::uint64_t Journal::start_segment() {
+    if (lease_) {
+        if (const std::string problem = lease_->problem(); !problem.empty())
+            throw Error(ErrorCode::Unavailable, problem);
+    }
     JournalFile next(journal_path(folder_, number_ + 1), number_ + 1);
     earlier_bytes_ += segment_.byte_size();
     segment_ = std::move(next);

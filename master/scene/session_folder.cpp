@@ -80,6 +80,7 @@ SessionFolder::SessionFolder(fs::path path) : path_(std::move(path)) {
         throw Error(ErrorCode::Unavailable, "another master uses the session folder '" + path_.string() +
                                                 "': stop it, or choose another with --session");
     }
+    lease_ = std::make_shared<FolderLease>(path_);
     remove_leftovers(path_);
 }
 

@@ -56,6 +56,7 @@ class SessionJournal {
     using Progress = std::pair<std::uint64_t, std::uint64_t>;  // transactions and film
     Progress saved_{}, being_saved_{};  // by the last checkpoint; by the one being written
     bool is_open_ = false, last_write_failed_ = false;
+    bool lost_ = false;  // to another master
     std::uint64_t checkpoints_ = 0;
 };
 
