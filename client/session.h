@@ -123,8 +123,8 @@ class Session {
     ViewResult wait_for_end(std::uint64_t number,
                             const std::function<void(const session::ViewProgress&)>& on_progress,
                             std::stop_token stop);
-    // Changes the filter of the view with this name, of any client; "" = the only view. Returns a description of
-    // the effect.
+    // Changes the filter of the view with this name; "" = the only view that this key may change. Returns a
+    // description of the effect. Throws Error{Refused} for another's view, unless this key is an operator's.
     std::string set_filter(const std::string& view, const std::string& filter);
     // Notices of the master since the last call: e.g. that a view waits for nodes, or cannot be rendered.
     std::vector<std::string> take_notices();

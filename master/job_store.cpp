@@ -41,9 +41,8 @@ void JobStore::record_to(const fs::path& folder) {
             HashedFile in(file.path(), JobMagic, "job");
             auto job = wire::decode_stored_job(in.take(in.number()));
             if (!job) throw job.error();
-            const auto picture = in.rest();
-            found.push_back({std::move(*job),
-                             std::make_shared<const std::vector<std::byte>>(picture.begin(), picture.end())});
+            found.push_back(
+                {std::move(*job), std::make_shared<const std::vector<std::byte>>(in.take(in.remaining()))});
         } catch (const Error& error) {
             events_({wire::Severity::Warning,
                      "job '" + file.path().string() + "' cannot be used: " + error.what()});

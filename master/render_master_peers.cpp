@@ -160,6 +160,21 @@ void RenderMaster::remove_timed_out_peers(TimePoint now) {
         if (session.liveness.timed_out(now)) timed_out.push_back(id);
     }
     for (const SessionId id : timed_out) remove_session(id, Views::DisconnectReason::Timeout, now);
+    if (!scene_.is_exclusive()) return;
+    const std::vector<SessionId> not_reading = scene_.views().not_reading(now);
+    if (sessions_.queue().empty()) return;  // no client waits
+    for (const SessionId id : not_reading) {
+        const SessionRecord* session = sessions_.find(id);
+        if (session == nullptr) continue;
+        events_(
+            {wire::Severity::Warning,
+             session->hello.name + " (" + session->user +
+                 ") does not read its picture while others wait for its scene to end: it counts as lost"});
+        outbox_.control(session->control,
+                        wire::Refusal{"you have not read your picture for too long while others waited for "
+                                      "your scene to end: tessera jobs lists it"});
+        remove_session(id, Views::DisconnectReason::Timeout, now);
+    }
 }
 
 void RenderMaster::drop_lost_peers(TimePoint now) {

@@ -238,7 +238,7 @@ void SceneSession::handle(SessionRecord& session, const wire::ReadWriters& reque
 void SceneSession::handle(SessionRecord& session, const wire::SetViewFilter& request, TimePoint now) {
     wire::RequestDone done{.request = request.request, .accepted = true, .text = {}};
     try {
-        done.text = views_.set_filter(request.view, request.filter, now);
+        done.text = views_.set_filter(session, request.view, request.filter, now);
     } catch (const Error& error) {
         done = {.request = request.request, .accepted = false, .text = error.what()};
     }

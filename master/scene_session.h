@@ -36,6 +36,13 @@ struct MasterServices {
     std::uint64_t memory_limit = 0;  // 0: three quarters of the machine's memory
 };
 
+// Of films, blobs and queues, in bytes.
+struct MemoryUse {
+    std::uint64_t used = 0, limit = 0;
+    // Why there is no room for so many more bytes of `what`; "" = there is.
+    std::string problem(std::uint64_t bytes, const std::string& what) const;
+};
+
 // Everything that belongs to one scene: content, edit history, replicas on nodes, views, display, files on disk,
 // members and their requests. RenderMaster passes messages to it; results of the rendering threads are taken
 // in tick().
@@ -64,6 +71,10 @@ class SceneSession {
         bool writes = false;
     };
     Cost cost_of(const scene::Edit& edit) const { return {authority_.size_of(edit), true}; }
+    // An edit was refused before it came to the authority. Not while is_editing().
+    void refused(SessionId session, std::uint64_t sequence, std::string problem) {
+        authority_.refused(session, sequence, std::move(problem));
+    }
     // Runs `work` on the authority, then `then` in the event loop: immediately, or on the authority's thread if it costs
     // more than the loop can spare. Not while is_editing().
     void run(const Cost& cost, std::function<void(SceneAuthority&)> work, std::function<void(TimePoint)> then,
@@ -75,6 +86,7 @@ class SceneSession {
     }
     SceneDistributor& distributor() { return distributor_; }
     const SceneDistributor& distributor() const { return distributor_; }
+    MemoryUse memory(std::optional<ViewId> replaced = std::nullopt) const;
     // Why the master has no room for so many more bytes of `what`; "" = it has. `replaced`: a view that goes for it.
     std::string memory_problem(std::uint64_t bytes, const std::string& what,
                                std::optional<ViewId> replaced = std::nullopt) const;

@@ -22,6 +22,14 @@ void SceneSession::record_to(const std::filesystem::path& folder, Duration check
     std::erase_if(views, [this](const wire::SavedView& view) {  // ended before its end was recorded
         return view.request.detached && services_.jobs.find({view.owner_user, view.name}) != nullptr;
     });
+    std::erase_if(views, [this](const wire::SavedView& view) {
+        const std::string problem = problem_of(view.request);
+        if (!problem.empty()) {
+            services_.events({wire::Severity::Error, "view '" + view.name + "' of " + view.owner_user +
+                                                         " is not continued: " + problem});
+        }
+        return !problem.empty();
+    });
     const bool has_only_jobs =
         !views.empty() &&
         std::all_of(views.begin(), views.end(), [](const auto& view) { return view.request.detached; });

@@ -57,16 +57,24 @@ std::string SceneSession::viewer_problem(const SessionRecord& session, std::uint
     return {};
 }
 
-std::string SceneSession::memory_problem(std::uint64_t bytes, const std::string& what,
-                                         std::optional<ViewId> replaced) const {
+std::string MemoryUse::problem(std::uint64_t bytes, const std::string& what) const {
+    if (used <= limit && bytes <= limit - used) return {};
+    return "the master has no room for " + what + ", " + std::to_string(bytes >> 20) +
+           " MiB: " + std::to_string(used >> 20) + " of " + std::to_string(limit >> 20) +
+           " MiB are used; close views, remove objects, or start it with a larger --memory";
+}
+
+MemoryUse SceneSession::memory(std::optional<ViewId> replaced) const {
     std::uint64_t used = services_.blobs->byte_size() + services_.outbox.waiting_bytes();
     for (const auto& [id, view] : views_.table().all()) {
         if (id != replaced) used += film_bytes(view.request.view);
     }
-    if (used + bytes <= memory_limit_) return {};
-    return "the master has no room for " + what + ", " + std::to_string(bytes >> 20) +
-           " MiB: " + std::to_string(used >> 20) + " of " + std::to_string(memory_limit_ >> 20) +
-           " MiB are used; close views, remove objects, or start it with a larger --memory";
+    return {used, memory_limit_};
+}
+
+std::string SceneSession::memory_problem(std::uint64_t bytes, const std::string& what,
+                                         std::optional<ViewId> replaced) const {
+    return memory(replaced).problem(bytes, what);
 }
 
 void SceneSession::handle(SessionRecord& session, wire::SetPresence request, TimePoint now) {

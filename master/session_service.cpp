@@ -20,6 +20,10 @@ std::vector<std::string> listed(std::vector<std::string> texts) {
     return texts;
 }
 
+std::string edit_of(const wire::EditSize& size) {
+    return "an edit of " + std::to_string(size.entries) + " entries";
+}
+
 constexpr std::size_t MaxPendingEdits = 256;
 }  // namespace
 
@@ -71,7 +75,15 @@ void SessionService::submit(SessionRecord& session, scene::Edit edit, std::uint6
         return refuse_edit(session, edit.sequence,
                            "too many edits wait for their blobs: send the blobs first");
     }
-    session.edits.push_back({std::nullopt, std::move(edit), message_bytes});
+    if (!session.edits.empty()) {  // it has to wait
+        const wire::EditSize size{edit.entries.size(), edit.entries.size() * sizeof(scene::Entry)};
+        if (std::string problem = memory_with_edits().problem(size.bytes, edit_of(size));
+            !problem.empty()) {  // its turn to be answered will come
+            edit = {.session = session.id, .sequence = edit.sequence, .entries = {}};
+            return session.edits.push_back({.edit = std::move(edit), .refusal = std::move(problem)});
+        }
+    }
+    session.edits.push_back({.edit = std::move(edit), .bytes = message_bytes});
     advance(session, now);
 }
 
@@ -82,11 +94,23 @@ void SessionService::submit(SessionRecord& session, const wire::SubmitEditByBlob
     }
     scene::Edit placeholder{
         .session = session.id, .sequence = message.sequence, .base = message.base, .entries = {}};
-    session.edits.push_back({message.blob, std::move(placeholder), 0});
+    session.edits.push_back({.encoded = message.blob, .edit = std::move(placeholder)});
     advance(session, now);
 }
 
+MemoryUse SessionService::memory_with_edits() const {
+    MemoryUse memory = scene_.memory();
+    for (const auto& [id, session] : sessions_.all()) {
+        for (const SessionRecord::PendingEdit& pending : session.edits)
+            memory.used += pending.edit.entries.size() * sizeof(scene::Entry);
+    }
+    return memory;
+}
+
 void SessionService::refuse_edit(SessionRecord& session, std::uint64_t sequence, std::string problem) {
+    // Not while an edit is applied: then it is one too many.
+    const bool is_next = session.edits.empty() || session.edits.front().edit.sequence == sequence;
+    if (is_next && !scene_.is_editing()) scene_.refused(session.id, sequence, problem);
     outbox_.control(session.control, wire::EditReply{.sequence = sequence,
                                                      .result = {.accepted = false,
                                                                 .version = scene_.published().version(),
@@ -125,6 +149,7 @@ struct SessionService::RunningEdit {
     SessionRecord::PendingEdit pending;
     scene::BlobPtr encoded;
     Editor who;
+    MemoryUse memory;
     std::vector<scene::BlobRef> missing;  // wanted before it can be applied
     EditAnswer answer;
     std::string problem;
@@ -143,6 +168,9 @@ struct SessionService::RunningEdit {
 
   private:
     void decode() {
+        const wire::EditSize size = wire::measure_edit(encoded->bytes());
+        if (const std::string too_large = memory.problem(size.bytes, edit_of(size)); !too_large.empty())
+            throw Error(ErrorCode::Refused, too_large);
         auto decoded = wire::decode_edit(encoded->bytes());
         if (!decoded) throw decoded.error();
         decoded->session = pending.edit.session;  // overrides the blob's value
@@ -158,22 +186,22 @@ void SessionService::advance(SessionRecord& session, TimePoint now) {
     bool waits = false;
     while (!session.edits.empty() && !session.edit_runs) {
         SessionRecord::PendingEdit& pending = session.edits.front();
-        if (!scene_.is_member(session.id)) {
-            refuse_edit(session, pending.edit.sequence, "this session has no open scene: open one first");
+        waits = scene_.is_editing();
+        try {
+            if (!scene_.is_member(session.id))
+                throw Error(ErrorCode::Refused, "this session has no open scene: open one first");
+            if (!pending.refusal.empty()) throw Error(ErrorCode::Refused, pending.refusal);
+            if (pending.encoded && !blobs_->find(pending.encoded->hash)) {
+                want(session, *pending.encoded);
+                waits = false;
+                break;
+            }
+        } catch (const Error& error) {
+            if (waits) break;  // the authority has to know of it
+            refuse_edit(session, pending.edit.sequence, error.what());
             session.edits.pop_front();
             continue;
         }
-        if (pending.encoded && !blobs_->find(pending.encoded->hash)) {
-            try {
-                want(session, *pending.encoded);
-                break;
-            } catch (const Error& error) {
-                refuse_edit(session, pending.edit.sequence, error.what());
-                session.edits.pop_front();
-                continue;
-            }
-        }
-        waits = scene_.is_editing();
         if (waits) break;
         const std::size_t before = session.edits.size();
         apply_first(session, now);
@@ -191,6 +219,7 @@ void SessionService::apply_first(SessionRecord& session, TimePoint now) {
     const std::size_t encoded_bytes = pending.encoded ? pending.encoded->byte_size : 0;
     edit->session = session.id;
     if (pending.encoded) edit->encoded = blobs_->find(pending.encoded->hash);
+    edit->memory = memory_with_edits();
     edit->pending = std::move(pending);
     pending.edit.sequence = edit->pending.edit.sequence;
     edit->who = {scene_.name(session.id), session.user, since_1970()};
@@ -221,9 +250,12 @@ void SessionService::applied(RunningEdit& edit, TimePoint now) {
             edit.problem = error.what();
         }
     }
-    session->edits.pop_front();
     session->edits_wait = true;  // what comes after it: see advance_waiting()
-    if (!edit.problem.empty()) return refuse_edit(*session, sequence, edit.problem);
+    if (!edit.problem.empty()) {
+        refuse_edit(*session, sequence, edit.problem);
+        return session->edits.pop_front();
+    }
+    session->edits.pop_front();
     // A scene that was closed meanwhile has no member to name.
     if (scene_.is_member(session->id))
         scene_.edited(*session, edit.pending.edit, edit.answer, edit.pending.bytes, now);

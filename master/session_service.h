@@ -2,6 +2,7 @@
 
 #include "master/peers/session_table.h"
 #include "master/scene_session.h"
+#include "mediator/wire/envelope.h"
 
 namespace tessera::master {
 
@@ -34,6 +35,7 @@ class SessionService {
     void want(SessionRecord& session, const scene::BlobRef& blob);  // throws Error over a limit
     void request_blobs(SessionRecord& session, TimePoint now);
     void advance_display(SessionRecord& session, TimePoint now);
+    MemoryUse memory_with_edits() const;  // those that wait included
     void refuse_edit(SessionRecord& session, std::uint64_t sequence, std::string problem);
     void admit(SessionRecord& session, const wire::JoinScene& request, TimePoint now);
     std::string busy_text() const;

@@ -26,9 +26,10 @@ struct SessionRecord {
     wire::BlobFetcher fetcher;
     // Edits in the order of arrival; the first waits until its blobs have arrived.
     struct PendingEdit {
-        std::optional<scene::BlobRef> encoded;  // the edit itself is a blob that has not arrived
+        std::optional<scene::BlobRef> encoded = {};  // the edit itself is a blob that has not arrived
         scene::Edit edit;
-        std::uint64_t bytes = 0;  // that it took on the wire
+        std::uint64_t bytes = 0;   // that it took on the wire
+        std::string refusal = {};  // its answer, when its turn comes; "" = it is applied
     };
     std::deque<PendingEdit> edits;
     bool edits_wait = false;  // for the scene authority: their blobs are here, or the first is being applied

@@ -57,6 +57,30 @@ void Delivery::forget(ViewId view) {
     std::erase_if(shipments_, [&](const Shipment& shipment) { return shipment.view == view; });
 }
 
+std::vector<SessionId> Delivery::stalled(TimePoint now, Duration limit) {
+    std::vector<SessionId> stalled;
+    for (auto& [key, watcher] : watchers_) {
+        const SessionRecord* session = sessions_.find(key.first);
+        const bool is_made = watcher.frame_in_flight != 0 && !pending_.contains(watcher.frame_in_flight);
+        if (session == nullptr || !is_made) {
+            watcher.progress = {};
+            continue;
+        }
+        std::array<std::uint64_t, 3> progress{
+            watcher.frame_in_flight, 0,
+            session->bulk ? outbox_.waiting_bytes(net::Link::Bulk, *session->bulk) : 0};
+        for (const Shipment& shipment : shipments_) {
+            if (shipment.to == key) progress[1] = shipment.picture_sent + shipment.tiles_sent;
+        }
+        if (watcher.progress != progress) {
+            watcher.progress = progress;
+            watcher.progress_at = now;
+        }
+        if (now - watcher.progress_at > limit) stalled.push_back(key.first);
+    }
+    return stalled;
+}
+
 std::optional<ViewId> Delivery::watched(SessionId session, std::uint64_t number) const {
     const auto watcher = watchers_.find({session, number});
     if (watcher == watchers_.end()) return std::nullopt;

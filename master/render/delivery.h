@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <deque>
 #include <list>
 #include <map>
@@ -35,6 +36,9 @@ class Delivery {
     void taken(SessionId session, const wire::FrameTaken& taken);
     void resumed(SessionId session);  // frames in flight may be lost: they are sent again
     void forget(ViewId view);         // closed: removes its watchers
+    // Clients that have had a frame for longer than `limit` and have neither taken it nor received more of it since.
+    // To be called regularly.
+    std::vector<SessionId> stalled(TimePoint now, Duration limit);
 
     // The end of a view that is kept until a client fetches it.
     struct Ended {
@@ -77,6 +81,9 @@ class Delivery {
         std::optional<DisplayedState> seen;  // the latest sent, and its scene version: after a
         Version
             seen_version;  // change that alters no pixel the same picture is sent again with the new version
+        // Of the frame in flight: its number, what was sent of it, what waits for the link.
+        std::array<std::uint64_t, 3> progress{};
+        TimePoint progress_at{};
     };
     struct PendingFrame {
         ViewId view;

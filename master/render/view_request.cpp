@@ -91,6 +91,7 @@ std::string problem_of(const session::ViewRequest& request) {
         return "only a picture with a time budget and without its film can adapt its size";
     }
     if (stop.time_limit < Duration::zero()) return "the time limit is negative";
+    if (request.wait_limit < Duration::zero()) return "the time to wait for nodes is negative";
     return {};
 }
 

@@ -15,6 +15,8 @@ struct ViewSettings {
         std::chrono::seconds(5);  // a unit that the node does not hold and whose film has not arrived: lost
     Duration orphan_patience = std::chrono::seconds(60);  // how long a view waits for an owner that timed out
     Duration orphan_limit = std::chrono::minutes(10);     // the same of a frame whose end its owner waits for
+    // How long a client may leave a picture unread while others wait for its exclusive scene to end.
+    Duration unread_limit = std::chrono::minutes(10);
     Duration frame_interval = std::chrono::milliseconds(33);  // between pictures of the same pass
     Duration progress_interval = std::chrono::milliseconds(100);
     Duration stop_grace = std::chrono::seconds(2);  // for film of cancelled units

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "master/filter/catalog.h"
 #include "master/render/picture_effect.h"
@@ -17,6 +18,11 @@ bool differ_in_filter_alone(view::View a, view::View b) {
     a.filter.clear();
     b.filter.clear();
     return a == b;
+}
+
+bool may_change(const SessionRecord& asker, const ViewState& view) {
+    return view.owner.session == asker.id || view.owner.user == asker.user ||
+           asker.role == net::Role::Operator;
 }
 
 }  // namespace
@@ -77,15 +83,19 @@ ViewState* Views::find_or_add(const ViewOwner& owner, std::uint64_t number, cons
                               std::string& problem) {
     const auto watched = delivery_.watched(owner.session, number);
     ViewState* view = watched ? table_.find(*watched) : nullptr;
+    const auto is_owner = [&](const ViewState& other) {
+        return other.owner.user == owner.user && other.owner.key == owner.key;
+    };
     if (ViewState* known = table_.named(name); known != nullptr && known != view) {
-        const bool is_owner = known->owner.user == owner.user && known->owner.key == owner.key;
-        if (!known->orphaned || !is_owner) {
+        if (!known->orphaned || !is_owner(*known)) {
             problem = "a view named '" + name + "' already exists: choose another name, or share it";
             return nullptr;
         }
         view = known;
     }
-    if (view != nullptr && view->owner.session != owner.session && !view->orphaned) view = nullptr;
+    // Who watches the view of another, even of one that was lost, gets a view of its own.
+    if (view != nullptr && view->owner.session != owner.session && !(view->orphaned && is_owner(*view)))
+        view = nullptr;
     if (view != nullptr) return view;
     const std::size_t count = table_.all().size() - group_.views().size();
     if (count >= settings_.max_views) {
@@ -162,8 +172,8 @@ bool Views::has_jobs() const {
                        [this](const auto& entry) { return is_job(entry.first); });
 }
 
-// The view of that name; without a name the only one, preferring views that a client waits for.
-ViewState& Views::view_to_filter(const std::string& name) {
+// The view of that name; without a name the only one, preferring those of the asker, and views that a client waits for.
+ViewState& Views::view_to_filter(const SessionRecord& asker, const std::string& name) {
     const auto refuse = [](const std::string& why) { throw Error(ErrorCode::Refused, why); };
     std::vector<ViewState*> waited, shown;
     for (auto& [id, view] : table_.all()) {
@@ -174,20 +184,28 @@ ViewState& Views::view_to_filter(const std::string& name) {
             waited.push_back(&view);
         }
     }
-    const auto& candidates = waited.empty() ? shown : waited;
+    auto& candidates = waited.empty() ? shown : waited;
+    const auto is_changeable = [&](const ViewState* view) { return may_change(asker, *view); };
+    if (std::ranges::any_of(candidates, is_changeable)) std::erase_if(candidates, std::not_fn(is_changeable));
     if (candidates.empty() && !name.empty())
         refuse("no view named '" + name + "' is being rendered: ask for the views that there are");
     if (candidates.empty()) refuse("no frame is being rendered: try again when one is");
     if (candidates.size() > 1)
         refuse("there are " + std::to_string(candidates.size()) + " views: name one of them with --view");
+    const ViewState& view = *candidates.front();
+    if (!is_changeable(&view)) {
+        refuse("view '" + view.name + "' belongs to " + view.owner.name + " (key " + view.owner.user +
+               "): only that key or an operator's may change its filter; open a view of your own");
+    }
     return *candidates.front();
 }
 
-std::string Views::set_filter(const std::string& name, const std::string& filter, TimePoint now) {
+std::string Views::set_filter(const SessionRecord& asker, const std::string& name, const std::string& filter,
+                              TimePoint now) {
     const auto refuse = [](const std::string& why) { throw Error(ErrorCode::Refused, why); };
     const auto choice = filter::parse_choice(filter, filter::catalog());
     if (!choice) refuse(choice.error().what());
-    ViewState& view = view_to_filter(name);
+    ViewState& view = view_to_filter(asker, name);
     if (view.request.picture == session::PictureEncoding::None) {
         refuse(
             "the frame's client requested only the film: nothing would be filtered; start it with "

@@ -37,9 +37,11 @@ class Views {
     std::string share(SessionId session, std::uint64_t number, const session::ViewRequest& wanted);
     // Stops watching the view; or ends it with its current samples.
     void end(SessionId session, const wire::EndView& request, TimePoint now);
-    // Sets the filter of the view of that name; "" = the only view. Returns a description of the effect; throws
+    // Sets the filter of the view of that name; "" = the only view, or the only one that the client may change. Its
+    // owner may, other sessions with the owner's key, and operators. Returns a description of the effect; throws
     // Error{Refused} with the reason.
-    std::string set_filter(const std::string& name, const std::string& filter, TimePoint now);
+    std::string set_filter(const SessionRecord& asker, const std::string& name, const std::string& filter,
+                           TimePoint now);
     // ---- jobs: views that continue without their client ----
     // Why it cannot be a job; "" = it can.
     static std::string job_problem(const session::ViewRequest& request);
@@ -54,6 +56,10 @@ class Views {
     session::ViewProgress progress(const ViewState& view) const { return runner_.progress(view); }
     void send_kept(const SessionRecord& session, Delivery::Ended kept) {
         delivery_.send_kept(session, std::move(kept));
+    }
+    // Clients that do not read their pictures; to be called regularly.
+    std::vector<SessionId> not_reading(TimePoint now) {
+        return delivery_.stalled(now, settings_.unread_limit);
     }
     std::size_t frames_in_flight(SessionId session) const { return delivery_.in_flight(session); }
 
@@ -105,7 +111,7 @@ class Views {
     ViewState* find_or_add(const ViewOwner& owner, std::uint64_t number, const std::string& name,
                            std::string& problem);
     std::string name_of_unnamed(const ViewOwner& owner, std::uint64_t number) const;
-    ViewState& view_to_filter(const std::string& name);
+    ViewState& view_to_filter(const SessionRecord& asker, const std::string& name);
     void change(ViewState& view, session::ViewRequest&& request, Version version, TimePoint now);
     void remove(ViewId view);
     void forget_orphans(TimePoint now);

@@ -117,6 +117,19 @@ EditorRecord restored(const wire::RecordedEditor& from) {
     return editor;
 }
 
+std::vector<scene::BlobRef> referenced_blobs(const AuthorityState& state) {
+    std::vector<scene::BlobRef> blobs = scene::referenced_blobs(state.scene);
+    for (const Transaction& transaction : state.history) {
+        for (const auto& [id, change] : transaction.changes.all()) {
+            for (const auto& object : {change.object.before, change.object.after}) {
+                if (!object) continue;
+                for (const scene::BlobRef& blob : scene::referenced_blobs(*object)) blobs.push_back(blob);
+            }
+        }
+    }
+    return blobs;
+}
+
 wire::CheckpointState recorded(const AuthorityState& state) {
     wire::CheckpointState to{.scene = scene::snapshot(state.scene),
                              .last_transaction = state.last_transaction};

@@ -18,6 +18,9 @@ struct AuthorityState {
     WriterTable writers;
 };
 
+// Of the scene and of its undo steps; each at least once.
+std::vector<scene::BlobRef> referenced_blobs(const AuthorityState& state);
+
 // In checkpoint form; the caller sets journal, title and views.
 wire::CheckpointState recorded(const AuthorityState& state);
 wire::RecordedEditor recorded(const EditorRecord& editor);

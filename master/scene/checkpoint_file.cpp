@@ -24,8 +24,19 @@ wire::CheckpointState parse(HashedFile& in, std::uint64_t number) {
             view.blocks.push_back(std::move(*film));
         }
     }
-    need(in.rest().empty(), "unexpected data after its last block");
+    need(in.remaining() == 0, "unexpected data after its last block");
     return std::move(*state);
+}
+
+std::vector<std::byte> encoded(const wire::CheckpointState& state) {
+    try {
+        return wire::encode(state);
+    } catch (const Error& error) {
+        throw Error(error.code(),
+                    "the scene with its history takes more than 2 GiB, which is what a checkpoint "
+                    "can hold: remove objects; edits are still recorded (" +
+                        std::string(error.what()) + ")");
+    }
 }
 
 }  // namespace
@@ -34,9 +45,11 @@ std::uint64_t write_checkpoint(const std::filesystem::path& path, std::uint64_t 
                                const wire::CheckpointState& state) {
     HashedFileWriter out(path, CheckpointMagic);
     out.put(number);
-    const std::vector<std::byte> bytes = wire::encode(state);
-    out.put(std::uint64_t{bytes.size()});
-    out.put(bytes);
+    {
+        const std::vector<std::byte> bytes = encoded(state);
+        out.put(std::uint64_t{bytes.size()});
+        out.put(bytes);
+    }
     for (const wire::SavedView& view : state.views) {
         for (const frame::FilmTile& block : view.blocks) {
             const std::vector<std::byte> film = wire::encode_film(block);

@@ -10,8 +10,12 @@
 
 namespace tessera::master {
 
-CheckpointWriter::CheckpointWriter(std::filesystem::path folder)
-    : folder_(std::move(folder)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+CheckpointWriter::CheckpointWriter(std::filesystem::path folder, std::shared_ptr<StoredBlobs> stored,
+                                   std::shared_ptr<FolderLease> lease)
+    : folder_(std::move(folder)),
+      stored_(std::move(stored)),
+      lease_(std::move(lease)),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 CheckpointWriter::~CheckpointWriter() {
     wait();
@@ -56,6 +60,11 @@ void CheckpointWriter::run(const std::stop_token& stop) {
     }
 }
 
+void CheckpointWriter::check_lease() const {
+    const std::string problem = lease_ ? lease_->problem() : std::string();
+    if (!problem.empty()) throw Error(ErrorCode::Unavailable, problem);
+}
+
 CheckpointResult CheckpointWriter::write(CheckpointJob job) const {
     const TimePoint begin = SteadyClock().now();
     CheckpointResult result{.number = job.number};
@@ -65,8 +74,16 @@ CheckpointResult CheckpointWriter::write(CheckpointJob job) const {
         state.title = std::move(job.scene.title);
         state.owner = std::move(job.scene.owner);
         state.views = std::move(job.views);
+        check_lease();
         result.byte_size = write_checkpoint(checkpoint_path(folder_, job.number), job.number, state);
+        check_lease();
         remove_outdated(folder_);
+        if (stored_) {
+            std::set<Hash256> blobs;
+            for (const scene::BlobRef& blob : referenced_blobs(job.authority)) blobs.insert(blob.hash);
+            stored_->written(job.number, std::move(blobs));
+            stored_->remove_unused();
+        }
     } catch (const std::exception& error) {
         result.problem = error.what();
     }

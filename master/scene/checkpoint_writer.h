@@ -2,6 +2,7 @@
 
 #include <condition_variable>
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -9,6 +10,8 @@
 #include <vector>
 
 #include "master/scene/authority_state.h"
+#include "master/scene/folder_lease.h"
+#include "master/scene/stored_blobs.h"
 
 namespace tessera::master {
 
@@ -26,10 +29,12 @@ struct CheckpointResult {
     std::string problem;  // empty = it is on disk, and outdated files are removed
 };
 
-// Writes checkpoints into a session folder, one at a time, on a background thread.
+// Writes checkpoints into a session folder, one at a time, on a background thread, and removes files that are not needed
+// any more.
 class CheckpointWriter {
   public:
-    explicit CheckpointWriter(std::filesystem::path folder);
+    explicit CheckpointWriter(std::filesystem::path folder, std::shared_ptr<StoredBlobs> stored = nullptr,
+                              std::shared_ptr<FolderLease> lease = nullptr);
     ~CheckpointWriter();  // waits for the one being written
     CheckpointWriter(const CheckpointWriter&) = delete;
     CheckpointWriter& operator=(const CheckpointWriter&) = delete;
@@ -42,8 +47,11 @@ class CheckpointWriter {
   private:
     void run(const std::stop_token& stop);
     CheckpointResult write(CheckpointJob job) const;
+    void check_lease() const;  // throws Error{Unavailable} when another master records in the folder
 
     const std::filesystem::path folder_;
+    const std::shared_ptr<StoredBlobs> stored_;
+    const std::shared_ptr<FolderLease> lease_;
     mutable std::mutex mutex_;  // protects the three below
     std::optional<CheckpointJob> job_;
     std::optional<CheckpointResult> result_;

@@ -3,10 +3,10 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <string>
 
 #include "master/scene/session_folder.h"
@@ -16,6 +16,11 @@ namespace tessera::master {
 namespace {
 
 constexpr std::size_t HashBytes = 32;
+constexpr std::uint64_t PieceBytes = std::uint64_t{1} << 20;
+
+Error cannot_read() {
+    return Error(ErrorCode::Io, std::string("cannot read it: ") + std::strerror(errno));
+}
 
 Error cannot_write(const std::filesystem::path& path) {
     return Error(ErrorCode::Io, "cannot write '" + path.string() + "': " + std::strerror(errno) +
@@ -61,36 +66,41 @@ void HashedFileWriter::raw(std::span<const std::byte> bytes) {
 }
 
 HashedFile::HashedFile(const std::filesystem::path& path, const HashedFileWriter::Magic& magic,
-                       const char* what) {
+                       const char* what)
+    : file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
     const auto need = [](bool holds, const std::string& otherwise) {
         if (!holds) throw Error(ErrorCode::InvalidInput, otherwise);
     };
-    std::ifstream file(path, std::ios::binary | std::ios::ate);
-    if (!file) throw Error(ErrorCode::Io, std::string("cannot read it: ") + std::strerror(errno));
-    bytes_.resize(static_cast<std::size_t>(file.tellg()));
-    file.seekg(0);
-    file.read(reinterpret_cast<char*>(bytes_.data()), static_cast<std::streamsize>(bytes_.size()));
-    bytes_.resize(static_cast<std::size_t>(file.gcount()));
-    need(bytes_.size() > magic.size() + HashBytes, "it ends too early");
-    need(std::memcmp(bytes_.data(), magic.data(), magic.size()) == 0,
+    if (file_.descriptor() < 0) throw cannot_read();
+    const std::uint64_t size = size_of(file_);
+    need(size > magic.size() + HashBytes, "it ends too early");
+    end_ = size - HashBytes;
+    const std::vector<std::byte> start = take(magic.size());
+    need(std::memcmp(start.data(), magic.data(), magic.size()) == 0,
          std::string("it is no ") + what + ", or one of another version of Tessera");
-    rest_ = std::span<const std::byte>(bytes_).first(bytes_.size() - HashBytes);
-    const Hash256 hash = blake2b(rest_);
-    need(std::memcmp(hash.bytes.data(), bytes_.data() + rest_.size(), HashBytes) == 0,
+    Blake2b hash;
+    hash.update(start);
+    while (at_ < end_) hash.update(take(std::min(PieceBytes, end_ - at_)));
+    std::array<std::byte, HashBytes> stored{};
+    const bool is_whole = read_at(file_, end_, stored);
+    const Hash256 computed = hash.finish();
+    need(is_whole && std::ranges::equal(stored, std::as_bytes(std::span(computed.bytes))),
          "its checksum is wrong: it is torn or damaged");
-    rest_ = rest_.subspan(magic.size());
+    at_ = magic.size();
 }
 
-std::span<const std::byte> HashedFile::take(std::uint64_t count) {
-    if (count > rest_.size()) throw Error(ErrorCode::InvalidInput, "it ends too early");
-    const auto part = rest_.first(count);
-    rest_ = rest_.subspan(count);
+std::vector<std::byte> HashedFile::take(std::uint64_t count) {
+    if (count > remaining()) throw Error(ErrorCode::InvalidInput, "it ends too early");
+    std::vector<std::byte> part(count);
+    if (!read_at(file_, at_, part)) throw Error(ErrorCode::InvalidInput, "it ends too early");
+    at_ += count;
     return part;
 }
 
 std::uint64_t HashedFile::number() {
     std::uint64_t value = 0;
-    std::memcpy(&value, take(sizeof value).data(), sizeof value);
+    const std::vector<std::byte> bytes = take(sizeof value);
+    std::memcpy(&value, bytes.data(), sizeof value);
     return value;
 }
 

@@ -39,19 +39,20 @@ class HashedFileWriter {
     bool is_finished_ = false;
 };
 
-// Reads such a file. Throws Error{Io} if it cannot be read, Error{InvalidInput} if it has another magic or is damaged.
+// Reads such a file: once to verify it, and then part by part, so that no more than one part is in memory. Throws
+// Error{Io} if it cannot be read, Error{InvalidInput} if it has another magic or is damaged.
 class HashedFile {
   public:
     HashedFile(const std::filesystem::path& path, const HashedFileWriter::Magic& magic, const char* what);
 
     // The next bytes; throws Error{InvalidInput} beyond the end.
-    std::span<const std::byte> take(std::uint64_t count);
+    std::vector<std::byte> take(std::uint64_t count);
     std::uint64_t number();
-    std::span<const std::byte> rest() const { return rest_; }
+    std::uint64_t remaining() const { return end_ - at_; }  // bytes
 
   private:
-    std::vector<std::byte> bytes_;
-    std::span<const std::byte> rest_;
+    FileHandle file_;
+    std::uint64_t at_ = 0, end_ = 0;
 };
 
 }  // namespace tessera::master

@@ -9,11 +9,14 @@
 namespace tessera::master {
 
 Journal::Journal(const std::filesystem::path& folder, std::shared_ptr<const scene::BlobStore> blobs,
-                 std::uint64_t segment, Duration sync_interval)
+                 std::uint64_t segment, std::shared_ptr<StoredBlobs> stored,
+                 std::shared_ptr<FolderLease> lease, Duration sync_interval)
     : folder_(folder),
       blobs_(std::move(blobs)),
       number_(segment),
       segment_(journal_path(folder, segment), segment),
+      stored_(stored ? std::move(stored) : std::make_shared<StoredBlobs>(folder)),
+      lease_(std::move(lease)),
       sync_(sync_interval) {
     sync_.soon(segment_.file());
     sync_folder(folder_);
@@ -35,6 +38,10 @@ Expected<void> Journal::append(const wire::JournalRecord& record) {
     } catch (const Error& error) {
         return tl::unexpected(error);
     }
+    if (lease_) {
+        if (const std::string problem = lease_->problem(); !problem.empty())
+            return failure(ErrorCode::Unavailable, problem);
+    }
     if (auto appended = segment_.append(bytes); !appended) return appended;
     sync_.soon(segment_.file());
     return {};
@@ -44,18 +51,17 @@ Expected<void> Journal::keep_blobs(const std::vector<scene::Entry>& entries) {
     bool wrote = false;
     for (const scene::Entry& entry : entries) {
         for (const scene::BlobRef& reference : scene::referenced_blobs(entry)) {
-            if (kept_.contains(reference.hash)) continue;
+            if (stored_->use(reference.hash, number_)) continue;
             const scene::BlobPtr blob = blobs_->find(reference.hash);
             if (!blob) {
                 return failure(ErrorCode::NotFound,
                                "blob " + to_hex(reference.hash) + " is no longer stored: send it again");
             }
             const std::filesystem::path folder = blobs_path(folder_);
-            if (auto written = scene::write_blob(folder, *blob); !written) return written;
+            if (auto written = stored_->write(*blob); !written) return written;
             const auto file = std::make_shared<FileHandle>(
                 ::open(scene::blob_path(folder, reference).c_str(), O_RDONLY | O_CLOEXEC));
             if (file->descriptor() >= 0) sync_.soon(file);
-            kept_.insert(reference.hash);
             wrote = true;
         }
     }
@@ -74,7 +80,7 @@ Expected<void> Journal::edited(const RecordedEdit& edit) {
 
 void Journal::cleared() {
     (void)append(wire::RecordedClose{});  // unwritten: a restart finds the scene as it was
-    kept_.clear();
+    stored_->scene_closed();
 }
 
 Expected<void> Journal::opened(const wire::RecordedTitle& scene) {
@@ -90,6 +96,10 @@ Expected<void> Journal::job_ended(const session::JobName& job) {
 }
 
 std::uint64_t Journal::start_segment() {
+    if (lease_) {
+        if (const std::string problem = lease_->problem(); !problem.empty())
+            throw Error(ErrorCode::Unavailable, problem);
+    }
     JournalFile next(journal_path(folder_, number_ + 1), number_ + 1);
     earlier_bytes_ += segment_.byte_size();
     segment_ = std::move(next);

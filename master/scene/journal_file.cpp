@@ -1,12 +1,13 @@
 #include "master/scene/journal_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <functional>
 #include <optional>
 
@@ -47,20 +48,30 @@ std::vector<std::byte> checksum(std::span<const std::byte> chain, std::span<cons
     return {full.bytes.begin(), full.bytes.begin() + ChecksumBytes};
 }
 
-std::vector<std::byte> journal_bytes(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary | std::ios::ate);
-    if (!file) throw cannot("read", path);
-    std::vector<std::byte> bytes(static_cast<std::size_t>(file.tellg()));
-    file.seekg(0);
-    file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    bytes.resize(static_cast<std::size_t>(file.gcount()));
-    return bytes;
-}
-
 }  // namespace
 
 FileHandle::~FileHandle() {
     if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+std::uint64_t size_of(const FileHandle& file) {
+    struct stat status {};
+    if (::fstat(file.descriptor(), &status) != 0)
+        throw Error(ErrorCode::Io, std::string("cannot read it: ") + std::strerror(errno));
+    return static_cast<std::uint64_t>(status.st_size);
+}
+
+bool read_at(const FileHandle& file, std::uint64_t offset, std::span<std::byte> bytes) {
+    while (!bytes.empty()) {
+        const ssize_t count =
+            ::pread(file.descriptor(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) throw Error(ErrorCode::Io, std::string("cannot read it: ") + std::strerror(errno));
+        if (count == 0) return false;
+        bytes = bytes.subspan(static_cast<std::size_t>(count));
+        offset += static_cast<std::uint64_t>(count);
+    }
+    return true;
 }
 
 JournalFile::JournalFile(const std::filesystem::path& path, std::uint64_t number)
@@ -112,68 +123,113 @@ Expected<void> JournalFile::append(std::span<const std::byte> payload) {
 
 namespace {
 
-// The length of the record that `rest` begins with; nothing: it is incomplete or damaged. A length with one wrong bit
-// would cost this record and all after it: the checksum says which bit it is.
-struct RecordLength {
-    std::optional<std::uint32_t> length;
-    bool is_repaired = false;
-};
-RecordLength length_of(std::span<const std::byte> rest, const std::vector<std::byte>& chain) {
-    std::uint32_t stored = 0;
-    std::memcpy(&stored, rest.data(), sizeof stored);
-    const auto matches = [&](std::uint32_t length) {
-        if (length == 0 || rest.size() - RecordHead < length) return false;
-        const std::vector<std::byte> sum = checksum(chain, rest.subspan(RecordHead, length));
-        return std::equal(sum.begin(), sum.end(), rest.begin() + LengthBytes);
-    };
-    if (matches(stored)) return {stored, false};
-    for (std::uint32_t bit = 1; bit != 0; bit <<= 1) {
-        if (matches(stored ^ bit)) return {stored ^ bit, true};
+// Reads a segment record by record: one is in memory at a time.
+class SegmentReader {
+  public:
+    explicit SegmentReader(const std::filesystem::path& path)
+        : file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+        if (file_.descriptor() < 0) throw cannot("read", path);
+        byte_size_ = size_of(file_);
     }
-    return {};
-}
+    std::uint64_t byte_size() const { return byte_size_; }
+
+    // Fewer if the file ends before.
+    std::vector<std::byte> start(std::size_t count) const {
+        std::vector<std::byte> bytes(std::min<std::uint64_t>(count, byte_size_));
+        if (!read_at(file_, 0, bytes)) bytes.clear();
+        return bytes;
+    }
+
+    struct Record {
+        std::uint32_t stored_length = 0;
+        std::vector<std::byte> checksum;
+        std::optional<std::vector<std::byte>> payload;  // nothing: it is incomplete or damaged
+        bool is_repaired = false;
+    };
+    // The record that begins at the offset; its head is complete. A length with one wrong bit would cost this record
+    // and all after it: the checksum says which bit it is.
+    Record record(std::uint64_t offset, const std::vector<std::byte>& chain) const {
+        std::array<std::byte, RecordHead> head{};
+        Record record;
+        if (!read_at(file_, offset, head)) return record;
+        std::memcpy(&record.stored_length, head.data(), sizeof record.stored_length);
+        record.checksum.assign(head.begin() + LengthBytes, head.end());
+        const std::uint64_t content = offset + RecordHead;
+        if (matches(record, content, record.stored_length, chain)) {
+            record.payload = payload(content, record.stored_length);
+            return record;
+        }
+        for (std::uint32_t bit = 1; bit != 0; bit <<= 1) {
+            if (!matches(record, content, record.stored_length ^ bit, chain)) continue;
+            record.payload = payload(content, record.stored_length ^ bit);
+            record.is_repaired = true;
+            return record;
+        }
+        return record;
+    }
+
+  private:
+    bool matches(const Record& record, std::uint64_t content, std::uint32_t length,
+                 const std::vector<std::byte>& chain) const {
+        if (length == 0 || byte_size_ - content < length) return false;
+        constexpr std::uint64_t PieceBytes = std::uint64_t{1} << 18;
+        Blake2b hash;
+        hash.update(chain);
+        std::vector<std::byte> piece;
+        for (std::uint64_t done = 0; done < length; done += piece.size()) {
+            piece.resize(std::min(PieceBytes, length - done));
+            if (!read_at(file_, content + done, piece)) return false;
+            hash.update(piece);
+        }
+        const Hash256 full = hash.finish();
+        return std::ranges::equal(record.checksum, std::as_bytes(std::span(full.bytes)).first(ChecksumBytes));
+    }
+    std::optional<std::vector<std::byte>> payload(std::uint64_t content, std::uint32_t length) const {
+        std::vector<std::byte> bytes(length);
+        if (!read_at(file_, content, bytes)) return std::nullopt;
+        return bytes;
+    }
+
+    FileHandle file_;
+    std::uint64_t byte_size_ = 0;
+};
 
 }  // namespace
 
 JournalScan read_journal(const std::filesystem::path& path, std::uint64_t number,
                          const std::function<Expected<void>(std::span<const std::byte>)>& take) {
-    const std::vector<std::byte> file = journal_bytes(path);
-    JournalScan scan{.byte_size = file.size()};
+    const SegmentReader file(path);
+    JournalScan scan{.byte_size = file.byte_size()};
     const auto stop = [&](JournalEnd end, const std::string& cause) {
         scan.end = end;
         scan.text = "'" + path.string() + "' at byte " + std::to_string(scan.offset) + ": " + cause;
         return scan;
     };
-    const std::vector<std::byte> head = header(number);
-    const std::span<const std::byte> all(file);
-    if (file.size() < HeaderBytes) {
-        const bool begun = std::equal(file.begin(), file.end(), head.begin());
+    const std::vector<std::byte> head = header(number), start = file.start(HeaderBytes);
+    if (start.size() < HeaderBytes) {
+        const bool begun = std::equal(start.begin(), start.end(), head.begin());
         return stop(begun ? JournalEnd::Torn : JournalEnd::Damaged, "its header is incomplete");
     }
-    if (!std::equal(head.begin(), head.end(), file.begin()))
-        return stop(JournalEnd::Damaged, "its header belongs to another segment");
+    if (start != head) return stop(JournalEnd::Damaged, "its header belongs to another segment");
     std::vector<std::byte> chain = checksum({}, head);
     scan.offset = HeaderBytes;
-    while (scan.offset < file.size()) {
-        const std::span<const std::byte> rest = all.subspan(scan.offset);
-        if (rest.size() < RecordHead) return stop(JournalEnd::Torn, "the last record is incomplete");
-        const RecordLength found = length_of(rest, chain);
-        if (!found.length) {
-            std::uint32_t stored = 0;
-            std::memcpy(&stored, rest.data(), sizeof stored);
-            if (stored == 0) return stop(JournalEnd::Damaged, "a record without content");
-            const std::size_t bytes = rest.size() - RecordHead;
-            if (bytes < stored)
+    while (scan.offset < file.byte_size()) {
+        const std::uint64_t rest = file.byte_size() - scan.offset;
+        if (rest < RecordHead) return stop(JournalEnd::Torn, "the last record is incomplete");
+        SegmentReader::Record record = file.record(scan.offset, chain);
+        if (!record.payload) {
+            if (record.stored_length == 0) return stop(JournalEnd::Damaged, "a record without content");
+            const std::uint64_t bytes = rest - RecordHead;
+            if (bytes < record.stored_length)
                 return stop(JournalEnd::Torn, "the last record is incomplete, or its length is damaged");
-            return stop(bytes == stored ? JournalEnd::Torn : JournalEnd::Damaged,
+            return stop(bytes == record.stored_length ? JournalEnd::Torn : JournalEnd::Damaged,
                         "a record's checksum does not match");
         }
-        scan.repaired += found.is_repaired ? 1 : 0;
-        const std::uint32_t length = *found.length;
-        const auto payload = rest.subspan(RecordHead, length);
-        if (auto taken = take(payload); !taken) return stop(JournalEnd::Damaged, taken.error().what());
-        chain.assign(rest.begin() + LengthBytes, rest.begin() + RecordHead);
-        scan.offset += RecordHead + length;
+        scan.repaired += record.is_repaired ? 1 : 0;
+        if (auto taken = take(*record.payload); !taken)
+            return stop(JournalEnd::Damaged, taken.error().what());
+        chain = std::move(record.checksum);
+        scan.offset += RecordHead + record.payload->size();
         ++scan.records;
     }
     return scan;

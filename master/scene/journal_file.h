@@ -27,6 +27,10 @@ class FileHandle {
 };
 using FilePtr = std::shared_ptr<const FileHandle>;
 
+std::uint64_t size_of(const FileHandle& file);  // bytes; throws Error{Io}
+// Fills `bytes` from that offset on; false: the file ends before. Throws Error{Io}.
+bool read_at(const FileHandle& file, std::uint64_t offset, std::span<std::byte> bytes);
+
 // One segment of a journal. A header (magic, format, number), then records: length in bytes (32 bits,
 // little-endian), BLAKE2b-128 over the checksum before it and the payload, the payload. So no record can be
 // changed, left out or put elsewhere unnoticed. Appended by one thread only.

@@ -163,21 +163,13 @@ class Recoverer {
             throw Error(ErrorCode::Io,
                         "cannot rename '" + path.string() + "' to .damaged: " + error.message());
         }
+        fs::last_write_time(path.string() + ".damaged", fs::file_time_type::clock::now(), error);
         loss("'" + path.string() + "' is kept as .damaged");
         return false;
     }
 
     void load_blobs() {
-        std::vector<scene::BlobRef> wanted = scene::referenced_blobs(authority_.scene());
-        for (const Transaction& transaction : authority_.save().history) {
-            for (const auto& [id, change] : transaction.changes.all()) {
-                for (const auto& object : {change.object.before, change.object.after}) {
-                    if (!object) continue;
-                    for (const scene::BlobRef& blob : scene::referenced_blobs(*object))
-                        wanted.push_back(blob);
-                }
-            }
-        }
+        std::vector<scene::BlobRef> wanted = referenced_blobs(authority_.save());
         std::sort(wanted.begin(), wanted.end());
         wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
         for (const scene::BlobRef& blob : wanted) {

@@ -143,6 +143,14 @@ SceneAuthority::Answer SceneAuthority::submit(const scene::Edit& edit, const Edi
     return editor->last_answer = edit.undo != 0 ? undo(*editor, edit, who) : change(*editor, edit, who);
 }
 
+void SceneAuthority::refused(SessionId session, std::uint64_t sequence, std::string problem) {
+    EditorRecord* editor = editors_.of(session);
+    if (editor == nullptr || sequence <= editor->last_sequence || order_problem(*editor, sequence)) return;
+    editor->last_sequence = sequence;
+    editor->may_skip = false;
+    editor->last_answer = {.version = version(), .problems = {std::move(problem)}};
+}
+
 SceneAuthority::Answer SceneAuthority::change(EditorRecord& editor, const scene::Edit& edit,
                                               const Editor& who) {
     Answer answer{.version = version()};

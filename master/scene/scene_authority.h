@@ -51,6 +51,8 @@ class SceneAuthority {
     // All blobs must be in the store. Accepted or refused as a whole, with all reasons. An edit sent again (same
     // sequence as the last) gets its first answer again; an older one, or one after a gap, is refused.
     Answer submit(const scene::Edit& edit, const Editor& who = {});
+    // An edit was refused before it came here: the next one follows it.
+    void refused(SessionId session, std::uint64_t sequence, std::string problem);
     // Objects that the edit may change.
     std::size_t size_of(const scene::Edit& edit) const;
     // Blobs that the edit needs and that are not in the store.

@@ -80,6 +80,26 @@ SessionFolder::SessionFolder(fs::path path) : path_(std::move(path)) {
         throw Error(ErrorCode::Unavailable, "another master uses the session folder '" + path_.string() +
                                                 "': stop it, or choose another with --session");
     }
+    lease_ = std::make_shared<FolderLease>(path_);
+    remove_leftovers(path_);
+}
+
+void remove_leftovers(const fs::path& folder) {
+    constexpr auto Kept = std::chrono::days(7);
+    const auto now = fs::file_time_type::clock::now();
+    for (const fs::path& part : {folder, blobs_path(folder), folder / "jobs"}) {
+        std::error_code error;
+        std::vector<fs::path> leftovers;
+        for (fs::directory_iterator place(part, error), end; !error && place != end; place.increment(error)) {
+            const std::string name = place->path().filename().string();
+            std::error_code ignored;
+            const auto age = now - fs::last_write_time(place->path(), ignored);
+            const bool was_damaged = name.ends_with(".damaged") || name.find(".tail-") != name.npos;
+            if (name.ends_with(".part") || (was_damaged && !ignored && age > Kept))
+                leftovers.push_back(place->path());
+        }
+        for (const fs::path& leftover : leftovers) fs::remove(leftover, error);
+    }
 }
 
 void remove_outdated(const fs::path& folder) {

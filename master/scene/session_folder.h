@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <vector>
 
+#include "master/scene/folder_lease.h"
 #include "master/scene/journal_file.h"
 
 namespace tessera::master {
@@ -18,21 +20,26 @@ std::filesystem::path journal_path(const std::filesystem::path& folder, std::uin
 std::filesystem::path checkpoint_path(const std::filesystem::path& folder, std::uint64_t number);
 std::filesystem::path blobs_path(const std::filesystem::path& folder);
 
-// Creates and locks the folder: throws Error{Unavailable} while another master uses it, Error{Io} if it cannot be
+// Creates and locks the folder, takes its lease (folder_lease.h), and removes what interrupted writes have left, and damaged files that a recovery kept
+// more than a week ago: throws Error{Unavailable} while another master uses it, Error{Io} if it cannot be
 // used.
 class SessionFolder {
   public:
     explicit SessionFolder(std::filesystem::path path);
     const std::filesystem::path& path() const { return path_; }
+    const std::shared_ptr<FolderLease>& lease() const { return lease_; }
 
   private:
     std::filesystem::path path_;
     FilePtr lock_;
+    std::shared_ptr<FolderLease> lease_;
 };
 
 // Removes all but the last two checkpoints, and the journal before the older of them. Files that cannot be removed
 // are left.
 void remove_outdated(const std::filesystem::path& folder);
+
+void remove_leftovers(const std::filesystem::path& folder);  // as above
 
 // Calls fsync on a file or folder; throws Error{Io}.
 void force_to_disk(const std::filesystem::path& path);

@@ -12,10 +12,11 @@ SessionJournal::SessionJournal(const std::filesystem::path& folder, Duration int
       authority_(authority),
       events_(std::move(events)),
       recovery_(recover(folder_, authority, *blobs)),
-      writer_(folder) {
+      stored_(std::make_shared<StoredBlobs>(folder)),
+      writer_(folder, stored_, folder_.lease()) {
     for (const std::string& note : recovery_.notes) events_({wire::Severity::Info, note});
     for (const std::string& loss : recovery_.losses) events_({wire::Severity::Warning, loss});
-    journal_.emplace(folder, std::move(blobs), recovery_.next_segment);
+    journal_.emplace(folder, std::move(blobs), recovery_.next_segment, stored_, folder_.lease());
 }
 
 void SessionJournal::opened(const wire::RecordedTitle& scene) {
@@ -30,6 +31,11 @@ void SessionJournal::closed() {
 }
 
 void SessionJournal::tick() {
+    if (!lost_) {
+        const std::string problem = folder_.lease()->lost_reason();
+        lost_ = !problem.empty();
+        if (lost_) events_({wire::Severity::Error, problem});
+    }
     const auto result = writer_.take_result();
     if (!result) return;
     last_write_failed_ = !result->problem.empty();
@@ -46,12 +52,13 @@ void SessionJournal::tick() {
 }
 
 bool SessionJournal::has_news(std::uint64_t film_progress) const {
-    return is_open_ && !writer_.busy() && saved_ != std::pair(authority_.transactions(), film_progress);
+    return is_open_ && !lost_ && !writer_.busy() &&
+           saved_ != std::pair(authority_.transactions(), film_progress);
 }
 
 bool SessionJournal::wants_checkpoint(std::uint64_t film_progress, TimePoint now) const {
     constexpr Duration RetryInterval = std::chrono::seconds(1);
-    const bool is_broken = is_open_ && !writer_.busy() && !journal_->problem().empty();
+    const bool is_broken = is_open_ && !lost_ && !writer_.busy() && !journal_->problem().empty();
     if (is_broken) return now - last_ >= std::min(interval_, RetryInterval);
     return now - last_ >= interval_ && has_news(film_progress);
 }

@@ -48,12 +48,14 @@ class SessionJournal {
     SceneAuthority& authority_;
     EventSink events_;
     Recovery recovery_;
+    std::shared_ptr<StoredBlobs> stored_;
     std::optional<Journal> journal_;
     CheckpointWriter writer_;
     TimePoint last_{};
     using Progress = std::pair<std::uint64_t, std::uint64_t>;  // transactions and film
     Progress saved_{}, being_saved_{};  // by the last checkpoint; by the one being written
     bool is_open_ = false, last_write_failed_ = false;
+    bool lost_ = false;  // to another master
     std::uint64_t checkpoints_ = 0;
 };
 

@@ -26,7 +26,8 @@ struct Remove {
     ObjectId id;
 };
 using Entry = std::variant<Create, Update, Remove>;
-inline constexpr std::size_t MaxEntries = 16'000'000;  // decoder limit
+inline constexpr std::size_t MaxEntries = 16'000'000;     // of a change list; decoder limit
+inline constexpr std::size_t MaxEditEntries = 2'000'000;  // of one edit
 
 ObjectId id(const Entry& entry);
 
@@ -59,7 +60,8 @@ struct Edit {
     std::uint64_t undo = 0;
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "session", &Edit::session), row(2, "sequence", &Edit::sequence),
-                          row(3, "base", &Edit::base), row(4, "entries", &Edit::entries, Limit{MaxEntries}),
+                          row(3, "base", &Edit::base),
+                          row(4, "entries", &Edit::entries, Limit{MaxEditEntries}),
                           row(5, "edit_group", &Edit::edit_group),
                           row(6, "submitted_at", &Edit::submitted_at), row(7, "undo", &Edit::undo));
     }

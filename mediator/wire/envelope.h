@@ -37,7 +37,13 @@ Expected<FilmHead> film_head(std::span<const std::byte> bytes);
 std::vector<std::byte> encode(const scene::ChangeList& changes);
 Expected<scene::ChangeList> decode_change_list(std::span<const std::byte> bytes);
 std::vector<std::byte> encode(const scene::Edit& edit);
+// An edit of more than scene::MaxEditEntries is an Error{InvalidInput} that says so, before it takes memory.
 Expected<scene::Edit> decode_edit(std::span<const std::byte> bytes);
+// What an encoded edit holds, without decoding it: its entries, and the bytes of memory that it takes at most.
+struct EditSize {
+    std::uint64_t entries = 0, bytes = 0;
+};
+EditSize measure_edit(std::span<const std::byte> bytes);
 
 // Whether an encoded message fits the control link (64 KiB); else send its content as a blob.
 bool fits_control(std::span<const std::byte> encoded);

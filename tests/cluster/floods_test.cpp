@@ -114,6 +114,25 @@ TEST_F(Floods, AKeyHasSoManySessionsAndOperatorsAlwaysGetIn) {
     EXPECT_TRUE(boss.connect("boss"));
 }
 
+// A removal takes a few bytes on the wire and some hundred in memory.
+TEST(EditFloods, AnEditThatDoesNotFitIntoMemoryIsRefusedBeforeItIsDecoded) {
+    LoopbackCluster cluster([](master::MasterSettings& settings) { settings.memory_limit = 64u << 20; });
+    const auto blobs = std::make_shared<scene::BlobStore>();
+    const auto ann = cluster.member("ann", blobs);
+    std::vector<scene::Entry> removals;
+    for (std::uint64_t i = 0; i < 200'000; ++i) removals.push_back(scene::Remove{ObjectId{1000 + i}});
+    const session::EditResult large = ann->submit(std::move(removals));
+    ASSERT_FALSE(large.accepted);
+    ASSERT_EQ(large.problems.size(), 1u);
+    EXPECT_TRUE(large.problems[0].starts_with("the master has no room for an edit of 200000 entries"))
+        << large.problems[0];
+    EXPECT_NE(large.problems[0].find("of 64 MiB are used"), std::string::npos) << large.problems[0];
+    const ObjectId first = ann->new_id();
+    for (int i = 0; i < 3; ++i) (void)ann->new_id();
+    const session::EditResult small = ann->submit(scene_entries(first, *blobs));
+    EXPECT_TRUE(small.accepted) << small.problems.at(0);
+}
+
 TEST_F(Floods, ViewersOpenFewAndModerateViews) {
     RawPeer eve = join_as_viewer();
     const auto request = [](std::uint64_t number, std::uint32_t size, std::uint64_t spp) {

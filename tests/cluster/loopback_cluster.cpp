@@ -77,8 +77,9 @@ std::unique_ptr<client::Session> LoopbackCluster::batch(const std::shared_ptr<sc
 
 std::unique_ptr<client::Session> LoopbackCluster::member(const std::string& name,
                                                          std::shared_ptr<scene::BlobStore> blobs,
-                                                         net::Role role) {
-    auto made = client::make_session(hub_.client(role), nullptr, std::move(blobs), clock_, {.name = name});
+                                                         net::Role role, const std::string& user) {
+    auto made =
+        client::make_session(hub_.client(role, user), nullptr, std::move(blobs), clock_, {.name = name});
     made->join({.title = "test"}, {});
     return made;
 }

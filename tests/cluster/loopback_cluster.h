@@ -41,7 +41,7 @@ class LoopbackCluster {
     std::unique_ptr<client::Session> batch(const std::shared_ptr<scene::BlobStore>& blobs);
     // A member of the shared scene "test", which it joins.
     std::unique_ptr<client::Session> member(const std::string& name, std::shared_ptr<scene::BlobStore> blobs,
-                                            net::Role role = net::Role::Editor);
+                                            net::Role role = net::Role::Editor, const std::string& user = {});
     // A client controlled by the test.
     std::unique_ptr<net::Channel> channel(net::Role role) { return hub_.client(role); }
     std::unique_ptr<net::Channel> channel(net::Role role, const std::string& user) {

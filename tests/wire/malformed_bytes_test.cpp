@@ -106,6 +106,26 @@ TEST(MalformedBytes, InChangeListsGiveAValueOrAnError) {
            [](std::span<const std::byte> bytes) { (void)decode_edit(bytes); });
 }
 
+// Each of these removals takes six bytes, and would take some hundred in memory.
+TEST(MalformedBytes, AnEditOfTooManyEntriesIsRefusedBeforeItTakesMemory) {
+    const Bytes one = encode(scene::Edit{.entries = {scene::Remove{ObjectId{7}}}});
+    Bytes bytes;
+    for (std::size_t i = 0; i <= scene::MaxEditEntries; ++i)
+        bytes.insert(bytes.end(), one.begin(), one.end());
+    const EditSize size = measure_edit(bytes);
+    EXPECT_EQ(size.entries, scene::MaxEditEntries + 1);
+    EXPECT_GT(size.bytes, scene::MaxEditEntries * sizeof(scene::Entry));
+    const auto decoded = decode_edit(bytes);
+    ASSERT_FALSE(decoded);
+    EXPECT_STREQ(decoded.error().what(),
+                 "an edit of 2000001 entries is longer than one may be, 2000000: make it in parts");
+    bytes.resize(2 * one.size());
+    ASSERT_TRUE(decode_edit(bytes));
+    EXPECT_EQ(decode_edit(bytes)->entries.size(), 2u);
+    bytes.resize(one.size() - 1);
+    EXPECT_EQ(measure_edit(bytes).entries, 0u) << "it ends within an entry";
+}
+
 // The field number precedes the value; nothing else in these messages has the same bytes.
 TEST(MalformedBytes, UnknownRenderersAreRefused) {
     const auto with = [](const ControlMessage& message, std::byte value, std::byte instead) {

@@ -334,8 +334,8 @@ class Session(SessionNames):
         return self._open(request)
 
     def set_filter(self, filter: str, view: str = "") -> str:
-        """Changes the filter of the view with this name, of any member; without a name, of the only view. Returns a description
-        of the effect."""
+        """Changes the filter of the view with this name; without a name, of the only view that this key may change. Returns a
+        description of the effect. The view of another key is for operators: others get `Refused`."""
         request = control_pb2.Control()
         request.set_view_filter.view, request.set_view_filter.filter = view.encode(), filter.encode()
         return text(self.connection.request(request).text)

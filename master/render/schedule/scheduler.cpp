@@ -216,9 +216,8 @@ void Scheduler::cut_round_for_deadline(std::span<const NodeCapacity> nodes, cons
     for (const NodeCapacity& node : nodes) rate += node.workers * balancer.rate(node.node);
     if (rate <= 0.0) return;
     const double needed = static_cast<double>(plan_.round_samples()) / rate;
-    if (now + std::chrono::duration_cast<Duration>(std::chrono::duration<double>(needed)) > *deadline_) {
-        plan_.deal_round_in_eighths();
-    }
+    // In seconds: with the rate that a node claims it may be centuries.
+    if (needed > seconds(*deadline_ - now)) plan_.deal_round_in_eighths();
 }
 
 // ---- ends ----

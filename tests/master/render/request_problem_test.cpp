@@ -60,6 +60,9 @@ TEST(RequestProblem, RejectsExcessiveCostAndOverflow) {
               std::string::npos);
     EXPECT_NE(problem([](auto& r) { r.stop.time_limit = Duration::min(); }).find("negative"),
               std::string::npos);
+    EXPECT_NE(problem([](auto& r) { r.stop.budget = Duration::min(); }).find("negative"), std::string::npos);
+    EXPECT_NE(problem([](auto& r) { r.wait_limit = Duration(-1); }).find("negative"), std::string::npos);
+    EXPECT_EQ(problem([](auto& r) { r.wait_limit = Duration::max(); }), "") << "compared, never added";
     EXPECT_NE(problem([](auto& r) { r.name = std::string(129, 'n'); }).find("128"), std::string::npos);
     EXPECT_NE(problem([](auto& r) { r.stop.spp = 0; }).find("2^31"), std::string::npos);
 }

@@ -142,6 +142,21 @@ TEST(Scheduler, PartlyFinishedUnitReturnsItsMissingSamples) {
     EXPECT_EQ(dealt, 15u);
 }
 
+// By its own account a node needs centuries for a round.
+TEST(Scheduler, ADeadlineHoldsWhateverRateANodeClaims) {
+    for (const Duration busy : {Duration(std::chrono::hours(1)), Duration::max()}) {
+        Scheduler scheduler({.window = {0, 0, 64, 64}, .tile = 64, .spp = 1u << 20, .first_level = 10},
+                            ViewId{1}, 1, {1, 1}, UnitId{1}, TimePoint{} + std::chrono::seconds(10));
+        Balancer balancer(Balancer::Settings{.first_samples = 1e9});
+        balancer.measured(NodeId{1}, 1, busy);
+        const auto one = scheduler.assign(std::vector{NodeCapacity{NodeId{1}, 1, 1, 0}}, balancer, {});
+        ASSERT_EQ(one.size(), 1u);
+        for (const Assignment& next :
+             scheduler.assign(std::vector{NodeCapacity{NodeId{2}, 1, 10, 0}}, balancer, {}))
+            EXPECT_LE(next.unit.block.level, 7u) << "the round was not cut";
+    }
+}
+
 TEST(Scheduler, DealsNoMoreAfterCancellingEverything) {
     Scheduler scheduler({.window = {0, 0, 64, 64}, .tile = 8, .spp = 4}, ViewId{1}, 1, {1, 1}, UnitId{1},
                         std::nullopt);

@@ -10,21 +10,21 @@ namespace {
 
 using frame::SampleBlock;
 
-constexpr Version Scene{1, 1};
+constexpr Version SceneVersion{1, 1};
 
 struct UnitLedgerTest : testing::Test {
     const std::vector<Rect> tiles{{0, 0, 8, 8}, {8, 0, 8, 8}};
     const NodeId A{1}, B{2}, C{3};
     UnitLedger ledger{tiles, UnitId{100}};
 
-    UnitId deal(NodeId node, std::uint32_t tile, const SampleBlock& block, Version version = Scene) {
+    UnitId deal(NodeId node, std::uint32_t tile, const SampleBlock& block, Version version = SceneVersion) {
         const UnitId id = ledger.next_unit();
         ledger.deal({.id = id, .version = version, .tile = tiles[tile], .block = block}, tile, nullptr, node,
                     {});
         return id;
     }
     Admission admit(NodeId node, UnitId unit, std::uint32_t tile, const SampleBlock& block,
-                    Version version = Scene) {
+                    Version version = SceneVersion) {
         return ledger.admit(node, {unit, version, tiles[tile], block});
     }
     std::uint64_t ended() const {
@@ -104,8 +104,8 @@ TEST_F(UnitLedgerTest, AFailureIsTheNodesFaultIfAnotherSucceeds) {
     ASSERT_EQ(returned.size(), 1u);
     EXPECT_FALSE(returned[0].trouble->is_settled());
     const UnitId again = ledger.next_unit();
-    ledger.deal({.id = again, .version = Scene, .tile = tiles[0], .block = {0, 2}}, 0, returned[0].trouble, B,
-                {});
+    ledger.deal({.id = again, .version = SceneVersion, .tile = tiles[0], .block = {0, 2}}, 0,
+                returned[0].trouble, B, {});
     (void)admit(B, again, 0, {0, 2});
     (void)ledger.arrived(B, 0, {0, 2});
     const auto explained = ledger.take_explained();
@@ -148,9 +148,11 @@ TEST_F(UnitLedgerTest, EveryHoldingEndsExactlyOnce) {
                 const UnitLedger::Returned chunk = waiting.back();
                 waiting.pop_back();
                 for (const SampleBlock& gap : units.samples(chunk.tile).missing_in(chunk.block)) {
-                    units.deal(
-                        {.id = units.next_unit(), .version = Scene, .tile = tiles[chunk.tile], .block = gap},
-                        chunk.tile, chunk.trouble, node, {});
+                    units.deal({.id = units.next_unit(),
+                                .version = SceneVersion,
+                                .tile = tiles[chunk.tile],
+                                .block = gap},
+                               chunk.tile, chunk.trouble, node, {});
                     ++dealt;
                 }
                 continue;
@@ -179,13 +181,14 @@ TEST_F(UnitLedgerTest, EveryHoldingEndsExactlyOnce) {
                 case 4: {  // stopped after its first half
                     const SampleBlock part{unit.unit.block.first,
                                            unit.unit.block.level - (unit.unit.block.level > 0)};
-                    ASSERT_EQ(units.admit(node, {id, Scene, unit.unit.tile, part}).problem, "");
+                    ASSERT_EQ(units.admit(node, {id, SceneVersion, unit.unit.tile, part}).problem, "");
                     (void)units.arrived(node, unit.tile, part);
                     units.end(id, node, Fate::Cancelled);
                     break;
                 }
                 default:
-                    ASSERT_EQ(units.admit(node, {id, Scene, unit.unit.tile, unit.unit.block}).problem, "");
+                    ASSERT_EQ(units.admit(node, {id, SceneVersion, unit.unit.tile, unit.unit.block}).problem,
+                              "");
                     (void)units.arrived(node, unit.tile, unit.unit.block);
             }
             for (UnitLedger::Returned& returned : units.take_returned())

@@ -208,6 +208,23 @@ TEST_F(CheckpointTest, MalformedFilesAreRefusedAndNeverCrash) {
     EXPECT_GT(refused, 100);
 }
 
+// They are read part by part, however large they are.
+TEST_F(CheckpointTest, HugeFilesTakeNoMemory) {
+    fs::create_directories(folder);
+    const fs::path checkpoint = checkpoint_path(folder, 1), journal = journal_path(folder, 1);
+    for (const fs::path& path : {checkpoint, journal}) {
+        write(path, "something else entirely");
+        fs::resize_file(path, std::uintmax_t{1} << 40);
+    }
+    const auto state = read_checkpoint(checkpoint, 1);
+    ASSERT_FALSE(state);
+    EXPECT_NE(std::string(state.error().what()).find("it is no checkpoint"), std::string::npos);
+    const JournalScan scan =
+        read_journal(journal, 1, [](std::span<const std::byte>) { return Expected<void>(); });
+    EXPECT_EQ(scan.end, JournalEnd::Damaged);
+    EXPECT_EQ(scan.byte_size, std::uint64_t{1} << 40);
+}
+
 TEST_F(CheckpointTest, MissingFolderIsReported) {
     auto master = start(1);
     CheckpointWriter writer(folder / "nowhere");

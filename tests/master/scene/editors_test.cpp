@@ -132,6 +132,18 @@ TEST_F(EditorsTest, RepeatsTheLastAnswerAndRejectsOlderOrUnorderedEdits) {
     must(edit(anna, {roughness(red, 0.5f)}));
 }
 
+// By a limit of memory, say.
+TEST_F(EditorsTest, AnEditThatWasRefusedBeforehandIsFollowedByTheNext) {
+    must(edit(anna, {roughness(red, 0.5f)}));
+    authority.refused(anna.session, anna.sequence + 1, "too large");
+    const auto repeated = edit(anna, {roughness(red, 0.75f)});
+    ASSERT_FALSE(repeated.accepted);
+    EXPECT_EQ(repeated.problems.at(0), "too large") << "its answer stays";
+    must(edit(anna, {roughness(red, 0.25f)}));
+    authority.refused(anna.session, anna.sequence + 5, "there is a gap");
+    must(edit(anna, {roughness(red, 0.5f)}));
+}
+
 TEST_F(EditorsTest, IdRangesAreAllocatedToOneEditorAtATime) {
     const Scene scene;
     Editors editors;

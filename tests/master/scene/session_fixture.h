@@ -26,6 +26,7 @@ struct SessionFixture : testing::Test {
         std::shared_ptr<scene::BlobStore> blobs = std::make_shared<scene::BlobStore>();
         SceneAuthority authority;
         std::unique_ptr<SessionFolder> files;
+        std::shared_ptr<StoredBlobs> stored;
         std::unique_ptr<Journal> journal;
         Recovery recovery;
     };
@@ -35,7 +36,9 @@ struct SessionFixture : testing::Test {
         auto master = std::make_unique<Master>(epoch);
         master->files = std::make_unique<SessionFolder>(folder);
         master->recovery = recover(*master->files, master->authority, *master->blobs);
-        master->journal = std::make_unique<Journal>(folder, master->blobs, master->recovery.next_segment);
+        master->stored = std::make_shared<StoredBlobs>(folder);
+        master->journal = std::make_unique<Journal>(folder, master->blobs, master->recovery.next_segment,
+                                                    master->stored, master->files->lease());
         master->authority.record_to(master->journal.get());
         return master;
     }

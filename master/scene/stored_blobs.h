@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <set>
+
+#include "mediator/base/error.h"
+#include "mediator/scene/blob.h"
+
+namespace tessera::master {
+
+// The blobs in a session folder. The journal writes those of an edit before the edit; the checkpoint writer removes
+// those that neither the last two checkpoints nor the journal since the older of them refer to. Thread-safe.
+class StoredBlobs {
+  public:
+    explicit StoredBlobs(std::filesystem::path session_folder);
+
+    // An edit that will be recorded in that segment refers to the blob. True: this process has written it, so it is on
+    // disk and stays until a checkpoint after that segment.
+    bool use(const Hash256& blob, std::uint64_t segment);
+    // Writes a blob that use() was called for. Fails with Io.
+    Expected<void> write(const scene::Blob& blob);
+    void scene_closed();  // from now on each blob is looked for on disk again
+
+    // The checkpoint of that number is on disk and refers to these blobs.
+    void written(std::uint64_t checkpoint, std::set<Hash256>&& blobs);
+    // Removes unused files; none unless both checkpoints in the folder were announced by written(), and the journal
+    // before them is gone. Returns their number.
+    std::size_t remove_unused();
+
+  private:
+    const std::filesystem::path folder_;
+    std::mutex mutex_;                       // protects all below
+    std::map<Hash256, std::uint64_t> used_;  // in which segment, at last
+    std::set<Hash256> kept_;                 // written, or found intact
+    std::map<std::uint64_t, std::set<Hash256>> checkpoints_;
+};
+
+}  // namespace tessera::master
