@@ -100,6 +100,7 @@ void RenderMaster::step(TimePoint now, std::stop_token stop) {
     // The whole process stood still, and woke later than it wanted to.
     forgive_silence(begun - std::max(deadline, now_before_), begun);
     const bool heard_all = take_in(std::move(received));
+    monitor_.ran("receiving", LoopMonitor::thread_cpu_time() - cpu_before);
     serve_messages(begun, stop);
     if (stop.stop_requested()) return;
     now = clock_.now();
