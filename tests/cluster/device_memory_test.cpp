@@ -115,7 +115,9 @@ TEST_F(DeviceMemoryTest, ANodeOutOfMemoryReportsItAndTakesTheNextVersion) {
     submit({Create{lamp(1), Light{}}});
     const client::ViewResult none = render();
     EXPECT_EQ(none.summary.outcome, session::Outcome::NoNodes);
-    EXPECT_NE(none.summary.message.find("node-1: capacity for 1 lamps, not for 2"), std::string::npos)
+    EXPECT_NE(
+        none.summary.message.find("1 node cannot build the scene (node-1: capacity for 1 lamps, not for 2)"),
+        std::string::npos)
         << none.summary.message;
     EXPECT_TRUE(was_logged("cannot build version"));
 
