@@ -31,16 +31,17 @@ std::string missing_channels(const NodeTable& nodes, frame::ChannelSet channels)
     return "the back-ends of " + std::to_string(lacking) + " nodes do not give " + names + "; ";
 }
 
-// "the scene does not fit into 2 nodes (node-1: why); ", or "" if memory is not the cause.
-std::string missing_room(const NodeTable& nodes, Version version) {
-    std::uint32_t full = 0;
+// "2 nodes cannot build the scene (node-1: why); ", or "" if none has refused it.
+std::string refusals(const NodeTable& nodes, Version version) {
+    std::uint32_t count = 0;
     std::string first;
     for (const auto& [id, node] : nodes.all()) {
         if (node.refused != version) continue;
-        if (full++ == 0) first = node.hello.name + ": " + node.refusal;
+        if (count++ == 0) first = node.hello.name + ": " + node.refusal;
     }
-    if (full == 0) return {};
-    return "the scene does not fit into " + std::to_string(full) + " nodes (" + first + "); ";
+    if (count == 0) return {};
+    return std::to_string(count) + (count == 1 ? " node" : " nodes") + " cannot build the scene (" + first +
+           "); ";
 }
 
 }  // namespace
@@ -57,7 +58,7 @@ bool ready(const NodeRecord& node, const view::View& view, Version version) {
 
 std::string obstacles(const NodeTable& nodes, const view::View& view, Version version) {
     return missing_renderer(nodes, view.renderer) + missing_channels(nodes, view.channels) +
-           missing_room(nodes, version);
+           refusals(nodes, version);
 }
 
 }  // namespace tessera::master

@@ -167,8 +167,8 @@ struct Resync {
         return std::tuple(row(1, "version", &Resync::version), row(2, "reason", &Resync::reason));
     }
 };
-// Node to master: this version does not fit into its (device) memory; it keeps the last one that did and tries the
-// next.
+// Node to master: it cannot build this version, e.g. since it does not fit into its (device) memory; it keeps the last one
+// that it could build and tries the next.
 struct SceneRefused {
     Version version;
     std::string reason;

@@ -1,7 +1,9 @@
 // Nodes whose device runs out of memory.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "mediator/backend/catalog.h"
 #include "mediator/scene/fields.h"
@@ -115,7 +117,9 @@ TEST_F(DeviceMemoryTest, ANodeOutOfMemoryReportsItAndTakesTheNextVersion) {
     submit({Create{lamp(1), Light{}}});
     const client::ViewResult none = render();
     EXPECT_EQ(none.summary.outcome, session::Outcome::NoNodes);
-    EXPECT_NE(none.summary.message.find("node-1: capacity for 1 lamps, not for 2"), std::string::npos)
+    EXPECT_NE(
+        none.summary.message.find("1 node cannot build the scene (node-1: capacity for 1 lamps, not for 2)"),
+        std::string::npos)
         << none.summary.message;
     EXPECT_TRUE(was_logged("cannot build version"));
 
@@ -171,6 +175,49 @@ TEST_F(DeviceMemoryTest, ALiveEditThatNoNodeCanBuildIsUndoneAndItsAuthorNotified
     EXPECT_EQ(session->history(1).at(0).undoes, second.transaction);
     EXPECT_TRUE(node_is_at(session->scene().version())) << "the node goes on";
     EXPECT_TRUE(session->submit({Create{session->new_id(), Material{}}}).accepted) << "so does the author";
+}
+
+TEST(DeviceMemoryRestart, AnUndoneEditStaysUndone) {
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("tessera-undone-" + std::to_string(::getpid()));
+    std::filesystem::remove_all(folder);
+    const auto records = [&](master::MasterSettings& settings) {
+        settings.session_folder = folder;
+        settings.checkpoint_interval = std::chrono::hours(1);
+    };
+    ObjectId fits, too_many;
+    {
+        LoopbackCluster cluster(records);
+        cluster.add_node(with_room(1));
+        const auto ann = cluster.member("ann", std::make_shared<BlobStore>());
+        fits = ann->new_id();
+        too_many = ann->new_id();
+        ASSERT_TRUE(ann->submit({Create{fits, Light{}}}).accepted);
+        ASSERT_TRUE(ann->submit({Create{too_many, Light{.name = "lamp"}}}).accepted);
+        for (int i = 0; i < 500 && ann->take_notices().empty(); ++i) {
+            std::this_thread::sleep_for(10ms);
+            ann->pump();
+        }
+        ann->refresh();
+        ASSERT_EQ(ann->scene().find(too_many), nullptr);
+    }
+    {
+        LoopbackCluster cluster(records);
+        cluster.add_node(with_room(1));
+        const auto ann = cluster.member("ann", std::make_shared<BlobStore>());
+        ann->refresh();
+        EXPECT_NE(ann->scene().find(fits), nullptr);
+        EXPECT_EQ(ann->scene().find(too_many), nullptr);
+        const auto is_built = [&] {
+            const session::ClusterStatus status = ann->status();
+            return status.nodes.size() == 1 && status.nodes[0].version == status.version;
+        };
+        for (int i = 0; i < 500 && !is_built(); ++i) std::this_thread::sleep_for(10ms);
+        EXPECT_TRUE(is_built());
+        for (const std::string& event : cluster.events())
+            EXPECT_EQ(event.find("cannot build"), std::string::npos) << event;
+    }
+    std::filesystem::remove_all(folder);
 }
 
 TEST_F(DeviceMemoryTest, TheNextSceneIsSentToItAgain) {

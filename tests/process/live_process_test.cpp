@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <filesystem>
 #include <random>
 #include <thread>
 
@@ -130,6 +131,43 @@ TEST_F(LiveProcess, SamplesMergedBeforeTheCrashAreKept) {
     }
     node->signal(SIGCONT);
     EXPECT_GE(after, 256u);
+}
+
+std::string newest_checkpoint(const std::string& folder) {
+    std::string newest;
+    for (const auto& file : std::filesystem::directory_iterator(folder)) {
+        const std::string name = file.path().filename().string();
+        if (name.starts_with("checkpoint-")) newest = std::max(newest, name);
+    }
+    return newest;
+}
+
+TEST(LiveShutdown, AMasterThatIsAskedToStopWritesACheckpoint) {
+    RealCluster cluster({"--heartbeat", "0.1", "--checkpoint", "3600"}, RealCluster::Session::Kept);
+    const SteadyClock clock;
+    std::string before;
+    ObjectId lamp;
+    {
+        const auto ann = client::connect({cluster.endpoint(), cluster.keys()}, std::make_shared<BlobStore>(),
+                                         clock, {.name = "ann"});
+        ann->join({.title = "room"}, {});
+        ASSERT_TRUE(ann->submit({Create{ann->new_id(), Material{.name = "first"}}}).accepted);
+        std::this_thread::sleep_for(500ms);  // the first checkpoint may be written at once
+        before = newest_checkpoint(cluster.folder() / "session");
+        lamp = ann->new_id();
+        ASSERT_TRUE(ann->submit({Create{lamp, Light{.name = "lamp"}}}).accepted);
+    }
+    cluster.master().signal(SIGTERM);
+    ASSERT_EQ(cluster.master().wait(30s).value_or(-1), 0) << cluster.master().err();
+    EXPECT_GT(newest_checkpoint(cluster.folder() / "session"), before);
+    cluster.start_master();
+    const auto bob = client::connect({cluster.endpoint(), cluster.keys()}, std::make_shared<BlobStore>(),
+                                     clock, {.name = "bob"});
+    bob->join({.title = "room"}, {});
+    ASSERT_NE(bob->scene().find_as<Light>(lamp), nullptr);
+    EXPECT_EQ(bob->scene().find_as<Light>(lamp)->name, "lamp");
+    const std::string log = cluster.master().err();
+    EXPECT_NE(log.find(" 0 edits were replayed from the journal"), std::string::npos) << log;
 }
 
 }  // namespace

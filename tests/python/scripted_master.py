@@ -41,6 +41,7 @@ class ScriptedMaster:
         self.refuse_edits = self.refuse_hello = self.is_mute = self.ignores_edits = False
         self.scene_by_blob = self.withholds_frames = False
         self.views, self.ended = {}, set()
+        self.failed_tiles = []  # of the next summaries
         self.submitted = []
         self.heads, self.adjustments = [], []
         self._next = 1
@@ -332,8 +333,9 @@ class ScriptedMaster:
         self.ended.add(number)
         self.send_frame(member, number, samples, complete=1)
         self._say(member.control, "view_done", number=number, frame=member.frame[number], summary=view_pb2.ViewSummary(
-            outcome=outcome, message=b"", version=self._version(), seconds_render=0.5, rays=7, samples=samples * 32,
-            min_samples=samples, max_samples=samples, nodes=[view_pb2.NodeSummary(name=b"n1")]))
+            outcome=5 if self.failed_tiles else outcome, message=b"", version=self._version(), seconds_render=0.5, rays=7, samples=samples * 32,
+            min_samples=samples, max_samples=samples, nodes=[view_pb2.NodeSummary(name=b"n1")],
+            failed_tiles=self.failed_tiles))
 
     def _on_end_view(self, member, end):
         if end.deliver:

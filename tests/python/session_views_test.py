@@ -10,6 +10,7 @@ import unittest
 
 import tessera
 from scripted_master import PNG
+from tessera.proto import common_pb2, view_pb2
 from with_master import WithMaster
 
 logging.disable(logging.CRITICAL)
@@ -164,6 +165,13 @@ class Views(WithMaster):
         self.assertEqual(self.master.views, {})
         with self.assertRaisesRegex(tessera.Refused, "needs samples"):
             self.session.render(self.POSE, spp=0)
+
+    def test_tiles_that_no_node_could_render_are_in_the_summary(self):
+        self.master.failed_tiles = [
+            view_pb2.FailedTile(rect=common_pb2.Rect(x=4, y=0, width=4, height=2), samples=3, message=b"a bad shader")]
+        summary = self.session.render(self.POSE, size=(8, 4), spp=16).summary
+        self.assertEqual(summary.outcome, "incomplete")
+        self.assertEqual(summary.failed_tiles, (tessera.FailedTile(4, 0, 4, 2, 3, "a bad shader"),))
 
     def test_stopped_view_delivers_its_samples(self):
         view = self.session.open_view(self.POSE, size=(8, 4), spp=1 << 40)

@@ -25,7 +25,7 @@ from .frame import Frame
 from .link import LinkSettings as _LinkSettings
 from .objects import (Attachment, Background, Camera, Geometry, Light, Material, Medium, Root, SurfaceShader, Texture,
                       TextureSlot, Transform)
-from .records import Committed, Hit, Member, Members, Progress, Status, Summary, Writer
+from .records import Committed, FailedTile, Hit, Member, Members, Progress, Status, Summary, Writer
 from .scene import Scene
 from .session import Session
 from .transaction import Transaction
@@ -35,7 +35,7 @@ from .view import Rendered, View
 __all__ = [
     "connect", "look_at", "multiply", "translation", "floats", "Session", "Scene", "Transaction", "View", "Frame",
     "Film", "Pose", "Object", "Root", "Transform", "Geometry", "Material", "Texture", "TextureSlot", "Light", "Camera",
-    "Background", "Attachment", "SurfaceShader", "Medium", "Blob", "ROOT_ID", "Committed", "Hit", "Member", "Members", "Progress", "Rendered",
+    "Background", "Attachment", "SurfaceShader", "Medium", "Blob", "ROOT_ID", "Committed", "FailedTile", "Hit", "Member", "Members", "Progress", "Rendered",
     "Status", "Summary", "Writer", "Error", "InvalidInput", "Malformed", "Refused", "Unavailable",
 ]
 

@@ -131,10 +131,22 @@ class Progress:
 
 
 @dataclass(frozen=True)
+class FailedTile:
+    """A tile of the picture that no node could render, or only with fewer samples."""
+
+    x: int  # pixels of the picture
+    y: int
+    width: int
+    height: int
+    samples: int  # per pixel that it has
+    message: str  # the failure, with the command that replays it
+
+
+@dataclass(frozen=True)
 class Summary(SampleCountNames):
     """Result of a view that has ended."""
 
-    outcome: str  # "complete", "time_up", "stopped", "no_nodes", "failed"
+    outcome: str  # "complete", "incomplete" (see failed_tiles), "time_up", "stopped", "no_nodes", "failed"
     message: str  # the reason, unless complete
     version: Version
     seconds_render: float
@@ -145,10 +157,11 @@ class Summary(SampleCountNames):
     nodes: tuple[str, ...]  # names of the nodes that rendered
     filter: str  # name and parameters, as executed
     notes: tuple[str, ...]  # about the picture
+    failed_tiles: tuple[FailedTile, ...] = ()  # the first ones
 
 
 _VIEW_PHASES = ("waiting_for_nodes", "syncing", "rendering", "delivering", "filtering")
-_OUTCOMES = ("complete", "time_up", "stopped", "no_nodes", "failed")
+_OUTCOMES = ("complete", "time_up", "stopped", "no_nodes", "failed", "incomplete")
 _PHASES = ("idle", "syncing", "building", "rendering", "leaving")
 
 
@@ -191,4 +204,6 @@ def summary_of(message: Message) -> Summary:
     return Summary(outcome, text(message.message), (message.version.epoch, message.version.number),
                    message.seconds_render, message.rays, message.samples, message.min_samples, message.max_samples,
                    tuple(text(node.name) for node in message.nodes), text(message.picture.filter),
-                   tuple(text(note) for note in message.picture.notes))
+                   tuple(text(note) for note in message.picture.notes),
+                   tuple(FailedTile(tile.rect.x, tile.rect.y, tile.rect.width, tile.rect.height, tile.samples, text(tile.message))
+                         for tile in message.failed_tiles))

@@ -101,10 +101,11 @@ class Programs:
 class Cluster:
     """A master and nodes with one worker each. Use it in a with statement."""
 
-    def __init__(self, programs, nodes, *, backend="embree", line=None):
+    def __init__(self, programs, nodes, *, backend="embree", line=None, master_options=()):
         """line: a function of two ports that connects the first with the second one, and returns a context manager; nodes then
         connect to the first one. None: they connect directly."""
         self.programs, self._children, self._line = programs, [], None
+        self._master_options, self.master = master_options, None
         try:
             self.keys = programs.scratch / "keys"
             if not self.keys.exists():
@@ -115,10 +116,8 @@ class Cluster:
                 port = free_port()
                 self._line = line(port, self.port)
             for i in range(nodes):
-                self._children.append(programs.start(
-                    "tessera-node", "--master", f"tcp://127.0.0.1:{port}", "--keys", self.keys, "--name", f"node-{i + 1}",
-                    "--threads", "1", "--backend", backend))
-            self._wait_for(nodes)
+                self.start_node(f"node-{i + 1}", "--backend", backend, port=port)
+            self.wait_for(nodes)
         except BaseException:
             self.close()
             raise
@@ -136,6 +135,13 @@ class Cluster:
     @property
     def endpoint(self):
         return f"tcp://127.0.0.1:{self.port}"
+
+    def start_node(self, name, *options, port=None):
+        """port: of a line to the master; None: of the master."""
+        node = self.programs.start("tessera-node", "--master", f"tcp://127.0.0.1:{port or self.port}", "--keys", self.keys, "--name",
+                                   name, "--threads", "1", *options)
+        self._children.append(node)
+        return node
 
     def close(self):
         self.programs.stop(self._children)
@@ -163,17 +169,20 @@ class Cluster:
         """Another process may take a port between its choice and its use, so a master that ends is started at another one."""
         for _ in range(5):
             port = free_port()
-            master = self.programs.start("tessera-master", "--listen", f"tcp://127.0.0.1:{port}", "--keys", self.keys)
+            master = self.programs.start("tessera-master", "--listen", f"tcp://127.0.0.1:{port}", "--keys", self.keys,
+                                         *self._master_options)
             until = time.monotonic() + START_SECONDS
             while master.poll() is None and time.monotonic() < until:
                 if "listening on" in master.log.read_text(errors="replace"):
                     self._children.append(master)
+                    self.master = master
                     return port
                 time.sleep(0.02)
             self.programs.stop([master])
         raise BenchError(f"the master does not start:\n{tail(master)}")
 
-    def _wait_for(self, nodes):
+    def wait_for(self, nodes):
+        """Until so many nodes have joined."""
         until = time.monotonic() + START_SECONDS
         while time.monotonic() < until:
             self.check()

@@ -1,6 +1,7 @@
 """A network line of limited rate in one process: forwards TCP connections between nodes and a master.
 
-All connections of a direction share its rate, as on the cable to the master. CURVE passes through untouched.
+All connections of a direction share its rate, as on the cable to the master. CURVE passes through untouched. A line may fail:
+hold() is a cable that is pulled for a while, forget() a firewall that drops its state, cut() closes connections.
 """
 
 import collections
@@ -44,6 +45,19 @@ def sleep_until(when):
         time.sleep(left)
 
 
+class Connection:
+    """Both ends of a forwarded connection. Bytes pass while `passes` is set."""
+
+    def __init__(self, near, far):
+        self.near, self.far, self.passes = near, far, threading.Event()
+
+    def cut(self):
+        self.passes.set()
+        for end in (self.near, self.far):
+            with contextlib.suppress(OSError):
+                end.shutdown(socket.SHUT_RDWR)
+
+
 class Line:
     """Forwards 127.0.0.1:`port` + i to 127.0.0.1:`target` + i, for i of 0 to `ports` - 1. rate: bits per second in each direction;
     latency: seconds that each direction adds. Use it in a with statement."""
@@ -52,8 +66,8 @@ class Line:
         self.rate = rate
         self.to_master, self.to_nodes = Direction(rate, latency), Direction(rate, latency)
         self._closed = False
-        self._lock = threading.Lock()  # protects _sockets and _threads
-        self._sockets, self._threads = [], []
+        self._lock = threading.Lock()  # protects what follows
+        self._sockets, self._threads, self._connections, self._forgotten, self._held = [], [], [], [], False
         try:
             for i in range(ports):
                 self._start(self._accept, self._listener(port + i), ("127.0.0.1", target + i))
@@ -71,10 +85,42 @@ class Line:
         """Bytes forwarded so far."""
         return Counts(time.monotonic(), self.to_master.byte_count, self.to_nodes.byte_count)
 
+    def hold(self):
+        """Nothing passes until go_on(), and no end notices: connections stay open, and new ones are accepted."""
+        with self._lock:
+            self._held = True
+            for connection in self._connections:
+                connection.passes.clear()
+
+    def go_on(self):
+        """Ends hold(): what was held passes on."""
+        with self._lock:
+            self._held = False
+            for connection in self._connections:
+                connection.passes.set()
+
+    def forget(self):
+        """The connections that there are stay open, but nothing passes over them any more. New ones work."""
+        with self._lock:
+            connections, self._connections = self._connections, []
+            for connection in connections:
+                connection.passes.clear()
+            self._forgotten += connections
+
+    def cut(self):
+        """Closes all connections. New ones work."""
+        with self._lock:
+            connections, self._connections = self._connections, []
+        for connection in connections:
+            connection.cut()
+
     def close(self):
         """Closes all connections and waits for the threads. Idempotent."""
         self._closed = True
+        self.cut()
         with self._lock:
+            for connection in self._forgotten:
+                connection.passes.set()
             sockets, threads = list(self._sockets), list(self._threads)
         for each in sockets:
             with contextlib.suppress(OSError):
@@ -118,20 +164,32 @@ class Line:
             for end in (near, far):
                 end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
                 end.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BUFFER)
-            self._forward(near, far, self.to_master)
-            self._forward(far, near, self.to_nodes)
+            connection = Connection(near, far)
+            with self._lock:
+                self._connections.append(connection)
+                if not self._held:
+                    connection.passes.set()
+            self._forward(near, far, connection.passes, self.to_master)
+            self._forward(far, near, connection.passes, self.to_nodes)
 
-    def _forward(self, source, sink, direction):
+    def _forward(self, source, sink, passes, direction):
         on_the_way = queue.Queue(QUEUED_CHUNKS)
-        self._start(self._read, source, on_the_way, direction)
+        self._start(self._read, source, on_the_way, passes, direction)
         self._start(self._write, sink, on_the_way)
 
-    def _read(self, source, on_the_way, direction):
+    @staticmethod
+    def _received(source, passes):
+        """The next bytes, b"" at the end; an end is held like all else."""
+        try:
+            data = source.recv(CHUNK)
+        except OSError:
+            data = b""
+        passes.wait()
+        return data
+
+    def _read(self, source, on_the_way, passes, direction):
         while True:
-            try:
-                data = source.recv(CHUNK)
-            except OSError:
-                data = b""
+            data = self._received(source, passes)
             sent_at = direction.occupy(len(data))
             on_the_way.put((sent_at + direction.latency, data))
             if not data:

@@ -95,6 +95,31 @@ class LineTest(unittest.TestCase):
         self.assertEqual(near.recv(4), b"ping")
         self.assertGreaterEqual(time.monotonic() - before, 0.1)
 
+    def test_what_is_held_passes_on_later(self):
+        line, near, far = self.line()
+        line.hold()
+        near.sendall(b"late")
+        far.settimeout(0.1)
+        with self.assertRaises(TimeoutError):
+            far.recv(4)
+        line.go_on()
+        far.settimeout(60)
+        self.assertEqual(far.recv(4), b"late")
+
+    def test_forgotten_connections_stay_silent_and_those_that_are_cut_end(self):
+        line, near, far = self.line()
+        line.forget()
+        line.go_on()
+        near.sendall(b"lost")
+        far.settimeout(0.1)
+        with self.assertRaises(TimeoutError):
+            far.recv(4)
+        with socket.create_connection(near.getpeername()) as new_near, self.server.accept()[0] as new_far:
+            new_near.sendall(b"news")
+            self.assertEqual(new_far.recv(4), b"news")
+            line.cut()
+            self.assertEqual(new_far.recv(1), b"")
+
     def test_the_end_of_a_connection_is_passed_on(self):
         line, near, far = self.line()
         near.close()
