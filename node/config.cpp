@@ -104,6 +104,8 @@ std::optional<int> parse_options(int argc, const char* const* argv, NodeOptions&
     if (options.name.empty()) options.name = options.host;
     if (options.name.size() > wire::MaxNameBytes)
         return usage("--name is longer than " + std::to_string(wire::MaxNameBytes) + " bytes");
+    if (options.threads > wire::MaxConcurrentUnits)
+        return usage("--threads is more than " + std::to_string(wire::MaxConcurrentUnits));
     return std::nullopt;
 }
 

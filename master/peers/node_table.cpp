@@ -13,10 +13,14 @@ bool has_null_backend(const wire::Hello& hello) {
 }  // namespace
 
 NodeCapacity NodeRecord::capacity() const {
+    constexpr std::uint32_t SlotsPerWorker =
+        2;  // one unit that it renders, and one prefetched: node/work_queue.h
     const auto on_the_way = static_cast<std::uint32_t>(pending.size());
+    const std::uint32_t workers = std::max(1u, hello.concurrent_units);
+    const std::uint32_t slots = std::min(state.free_slots, SlotsPerWorker * workers);
     return {.node = id,
-            .workers = std::max(1u, hello.concurrent_units),
-            .free_slots = state.free_slots > on_the_way ? state.free_slots - on_the_way : 0,
+            .workers = workers,
+            .free_slots = slots > on_the_way ? slots - on_the_way : 0,
             .in_flight = static_cast<std::uint32_t>(state.in_flight.size()) + on_the_way};
 }
 
@@ -85,7 +89,7 @@ void NodeTable::heartbeat(NodeRecord& node, const wire::Heartbeat& heartbeat, Ti
     if (round_trip) node.round_trip_seconds = seconds(*round_trip);
     const bool builds = heartbeat.phase == session::NodePhase::Building;
     const bool works = builds || heartbeat.phase == session::NodePhase::Rendering;
-    if (!works || !same_phase || heartbeat.progress != node.last_progress) {
+    if (!works || !same_phase || heartbeat.progress > node.last_progress) {
         node.last_progress = heartbeat.progress;
         node.last_progress_at = now;
     }

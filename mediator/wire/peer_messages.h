@@ -24,7 +24,7 @@ inline constexpr std::uint32_t ProtocolVersion = 3;
 
 // Names appear in status and summaries of many peers, which have to fit messages.
 inline constexpr std::size_t MaxNameBytes = 256;
-inline constexpr std::uint32_t MaxConcurrentUnits = 65536;
+inline constexpr std::uint32_t MaxConcurrentUnits = 4096;
 
 enum class PeerKind : std::uint8_t { Client, Node };
 constexpr auto enumerators(PeerKind) {
@@ -69,7 +69,7 @@ struct Hello {
         for (const std::string* text : {&name, &host, &software, &backend, &kind}) {
             if (text->size() > MaxNameBytes) return "a name is longer than 256 bytes";
         }
-        if (concurrent_units > MaxConcurrentUnits) return "a node renders at most 65536 units at a time";
+        if (concurrent_units > MaxConcurrentUnits) return "a node renders at most 4096 units at a time";
         return nullptr;
     }
 };

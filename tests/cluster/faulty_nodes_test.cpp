@@ -95,6 +95,59 @@ TEST_F(FaultyNodes, FilmThatWasNeverAskedForChangesNoPicture) {
     expect_balanced();
 }
 
+// It takes all units that it gets, says that it renders them and others, and sends nothing.
+TEST_F(FaultyNodes, ANodeThatLiesAboutItsCapacityAndProgressCostsNoPicture) {
+    cluster.add_node(hooked([](const auto&, auto&) {}, 20us));
+    const auto session = cluster.batch(std::make_shared<scene::BlobStore>());
+    session->refresh();
+    const Version version = session->scene().version();
+    const Hash128 hash = session->scene().state_hash();
+    std::atomic<bool> done = false;
+    std::atomic<std::uint64_t> units = 0;
+    std::jthread liar([&] {
+        RawPeer peer(cluster.channel(net::Role::Node));
+        wire::Hello hello{.peer = wire::PeerKind::Node, .name = "liar"};
+        hello.channels = small_request().view.channels;
+        hello.renderers = view::TracingRenderers;
+        hello.kind = "null";
+        hello.concurrent_units = 1u << 31;
+        peer.send(hello);
+        for (int i = 0; i < 20; ++i) peer.poll();
+        EXPECT_EQ(peer.received<wire::Welcome>(), nullptr) << "no machine has so many cores";
+        hello.concurrent_units = wire::MaxConcurrentUnits;
+        peer.send(hello);
+        if (!peer.wait_for<wire::Welcome>()) return;
+        peer.send(wire::BulkHello{peer.received<wire::Welcome>()->token});
+        wire::Heartbeat& lie = peer.heartbeat;
+        lie.phase = session::NodePhase::Rendering;
+        lie.progress = std::numeric_limits<std::uint64_t>::max();
+        lie.free_slots = std::numeric_limits<std::uint32_t>::max();
+        for (std::uint64_t id = 0; id < 64; ++id) lie.in_flight.push_back(UnitId{(id << 32) + 1 + id});
+        lie.version = version;
+        peer.send(wire::VersionReport{.version = version, .state_hash = hash});
+        while (!done) {
+            peer.poll();
+            while (const auto* work = peer.received<wire::Work>(units)) {
+                lie.in_flight.push_back(work->unit.id);
+                lie.last_work_sequence = work->sequence + 1'000'000;
+                ++units;
+            }
+            lie.progress -= 1000;
+        }
+    });
+    session::ViewRequest request = small_request();
+    request.min_nodes = 2;
+    const client::ViewResult result = client::render(*session, request, {}, {});
+    status = session->status();
+    done = true;
+    EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
+    EXPECT_EQ(to_hex(frame::film_hash(*result.film())), honest_hash());
+    EXPECT_GT(units, 0u) << "it was believed";
+    EXPECT_LE(units, 2u * wire::MaxConcurrentUnits);
+    EXPECT_EQ(quarantine("node-1"), "");
+    expect_balanced();
+}
+
 TEST_F(FaultyNodes, ANodeThatFailsEveryUnitIsQuarantinedAndTheJobFinishes) {
     std::atomic<int> failures = 0;
     cluster.add_node(hooked([&](const auto&, auto&) {

@@ -3,7 +3,7 @@
 namespace tessera::test {
 
 void RawPeer::poll() {
-    send(wire::Heartbeat{.sent_at = 1});
+    send(heartbeat);
     const auto now = std::chrono::steady_clock::now();
     for (auto event = channel_->receive(now + std::chrono::milliseconds(5));
          std::holds_alternative<net::Message>(event); event = channel_->receive(now)) {

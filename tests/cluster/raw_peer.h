@@ -13,6 +13,8 @@ namespace tessera::test {
 // A client that sends the test's messages, and all messages that it received.
 class RawPeer {
   public:
+    wire::Heartbeat heartbeat{.sent_at = 1};  // that poll() sends
+
     explicit RawPeer(std::unique_ptr<net::Channel> channel) : channel_(std::move(channel)) {}
 
     void send(const wire::ControlMessage& message) { send(net::Link::Control, wire::encode(message)); }

@@ -63,6 +63,7 @@ TEST(NodeOptions, AWrongChoiceOrNumberExits64) {
     EXPECT_TRUE(mentions(choice.err, "did you mean 'null'")) << choice.err;
     EXPECT_EQ(parse({"--master", "tcp://a:1", "--insecure", "--threads", "many"}).exit, 64);
     EXPECT_EQ(parse({"--master", "tcp://a:1", "--insecure", "--threads", "-1"}).exit, 64);
+    EXPECT_EQ(parse({"--master", "tcp://a:1", "--insecure", "--threads", "4097"}).exit, 64);
     EXPECT_EQ(parse({"--master", "tcp://a:1", "--insecure", "--simulate-cost", "20"}).exit, 64);
     EXPECT_EQ(parse({"--master", "tcp://a:1", "--insecure", "stray"}).exit, 64);
 }
