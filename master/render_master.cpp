@@ -239,38 +239,6 @@ void RenderMaster::control(net::Message& message, TimePoint now) {
     if (!std::holds_alternative<wire::Goodbye>(*decoded)) outbox_.control(message.peer, wire::Unknown{});
 }
 
-bool RenderMaster::must_wait(const SessionRecord& session, const wire::ControlMessage& message) const {
-    if (session.held.empty()) return scene_.waits(session, message);
-    return !std::holds_alternative<wire::Heartbeat>(message);  // in order
-}
-
-void RenderMaster::hold(SessionRecord& session, const net::Message& message, wire::ControlMessage&& decoded) {
-    constexpr std::size_t MaxMessages = 1024, MaxBytes = std::size_t{16} << 20;
-    if (session.held.size() >= MaxMessages || session.held_bytes >= MaxBytes)
-        return drop(message, "too many messages of this client wait for an edit");
-    session.held_bytes += message.bytes.size();
-    session.held.push_back({std::move(decoded), message.bytes.size()});
-}
-
-void RenderMaster::serve_held_messages(TimePoint now) {
-    std::vector<SessionId> holding;
-    for (const auto& [id, session] : sessions_.all()) {
-        if (!session.held.empty()) holding.push_back(id);
-    }
-    for (const SessionId id : holding) {
-        // A message may end its session.
-        for (SessionRecord* session = sessions_.find(id);
-             session && !session->held.empty() && !scene_.waits(*session, session->held.front().message);
-             session = sessions_.find(id)) {
-            SessionRecord::HeldMessage held = std::move(session->held.front());
-            session->held.pop_front();
-            session->held_bytes -= held.byte_size;
-            guard_.run(wire::table::Control::name(held.message),
-                       [&] { from_client(*session, held.message, held.byte_size, now); });
-        }
-    }
-}
-
 void RenderMaster::bulk(net::Message& message, TimePoint now) {
     if (!wire::is_bulk(message.bytes)) return drop(message, "not a bulk message");
     if (wire::is_film(message.bytes)) {

@@ -10,7 +10,7 @@ namespace tessera::test {
 
 struct FuzzSettings {
     std::uint64_t seed = 1;
-    std::uint64_t messages = 25'000;  // of the hostile peers, in all
+    std::uint64_t messages = 25'000;  // of the random peers, in all
     std::size_t peers = 8;
 };
 

@@ -265,7 +265,8 @@ void RandomPeer::adjust(Message& message) {
     if constexpr (std::is_same_v<Message, wire::RequestView>) adjust_view(message.wanted);
     if constexpr (std::is_same_v<Message, wire::SubmitEdit>) adjust_edit(message.edit);
     if constexpr (std::is_same_v<Message, wire::JoinScene>) {
-        message.no_wait = message.no_wait || message.exclusive;  // nobody gets the stage for himself
+        message.no_wait =
+            message.no_wait || message.exclusive;  // no exclusive scene that others would wait for
         message.key = random_.below(3);
     }
     if constexpr (std::is_same_v<Message, wire::VersionReport>) {

@@ -71,7 +71,7 @@ class RandomPeer {
     Version version_;
     Hash128 state_hash_;
     std::set<ObjectId> created_;
-    std::vector<Hash256> blobs_;  // that it was told of
+    std::vector<Hash256> blobs_;  // that the master named
     // of a node
     std::deque<view::WorkUnit> units_;
     std::deque<wire::OpenView> views_;
