@@ -1,6 +1,7 @@
 #include <unistd.h>
 
 #include <iostream>
+#include <new>
 #include <stop_token>
 
 #include "mediator/backend/catalog.h"
@@ -85,5 +86,8 @@ int main(int argc, char** argv) {
     } catch (const Error& error) {
         std::cerr << "tessera-node: " << error.what() << "\n";
         return error.code() == ErrorCode::InvalidInput ? 2 : cli::ExitUnavailable;
+    } catch (const std::bad_alloc&) {
+        std::cerr << "tessera-node: out of memory: give it more, or fewer --threads\n";
+        return cli::ExitUnavailable;
     }
 }
