@@ -93,7 +93,7 @@ void SceneSession::join(SessionRecord& session, const wire::JoinScene& request, 
         try {
             if (joining->opens && journal_) journal_->opened(*joining->opens);
             if (may_edit) joining->ids = authority.join(id, user, key);
-        } catch (const Error& error) {
+        } catch (const std::exception& error) {
             joining->problem = error.what();
         }
     };

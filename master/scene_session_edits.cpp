@@ -1,5 +1,6 @@
 // What a scene session does on the scene authority, in the event loop or on the authority's thread.
 #include <algorithm>
+#include <exception>
 
 #include "master/scene_session.h"
 #include "mediator/wire/envelope.h"
@@ -34,18 +35,27 @@ bool SceneSession::waits(const SessionRecord& session, const wire::ControlMessag
 
 void SceneSession::run(const Cost& cost, std::function<void(SceneAuthority&)> work,
                        std::function<void(TimePoint)> then, TimePoint now) {
-    const auto finish = [this, then = std::move(then)](TimePoint at) {
+    const auto failed = std::make_shared<std::exception_ptr>();
+    const auto finish = [this, failed, then = std::move(then)](TimePoint at) {
         requester_.reset();
         transactions_ = authority_.transactions();
         if (journal_) journal_bytes_ = journal_->byte_size();
-        then(at);
+        if (!*failed) then(at);
         catch_up_with_edits(at);
+        if (*failed) std::rethrow_exception(*failed);  // to the loop's guard, as if it had happened there
     };
     if (cost.objects <= SceneEncoder::ShortList && !(cost.writes && journal_)) {
         work(authority_);
         return finish(now);
     }
-    thread_.run([this, work = std::move(work)] { work(authority_); }, finish);
+    const auto guarded = [this, failed, work = std::move(work)] {
+        try {
+            work(authority_);
+        } catch (...) {
+            *failed = std::current_exception();
+        }
+    };
+    thread_.run(guarded, finish);
 }
 
 // What came up while the authority was on its thread.
@@ -205,7 +215,7 @@ void SceneSession::handle(SessionRecord& session, const wire::RequestView& reque
         requester_ = id;
         follow(glm::dvec3(request.wanted.view.camera.world_from_camera[3]), at, open);
     };
-    const bool waits_for_end = request.wanted.frames == session::Frames::Last;
+    const bool waits_for_end = request.wanted.frames == session::Frames::Last || request.wanted.detached;
     if (!waits_for_end) publish_if_due(now);
     if (is_editing()) {
         // It opens at the version there is; what is being edited restarts it.
