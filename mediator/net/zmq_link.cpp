@@ -128,16 +128,14 @@ WakeSignal::~WakeSignal() {
 }
 
 void WakeSignal::raise() {
+    raised_ = true;  // before the write: a thread that the write wakes finds it
     const std::uint64_t one = 1;
-    [[maybe_unused]] const auto written = write(descriptor_, &one, sizeof one);  // full: already raised
-    raised_ = true;  // after the write: a thread that sees it can read
+    [[maybe_unused]] const auto written = write(descriptor_, &one, sizeof one);  // full: already readable
 }
 
-bool WakeSignal::take() {
-    if (!raised_.exchange(false)) return false;
+void WakeSignal::drain() {
     std::uint64_t count = 0;
     [[maybe_unused]] const auto taken = read(descriptor_, &count, sizeof count);
-    return true;
 }
 
 void wait_readable(std::array<zmq::socket_t, 2>& sockets, WakeSignal& signal, TimePoint deadline) {
@@ -154,7 +152,7 @@ void wait_readable(std::array<zmq::socket_t, 2>& sockets, WakeSignal& signal, Ti
                                           {sockets[1].handle(), 0, ZMQ_POLLIN, 0},
                                           {nullptr, signal.descriptor(), ZMQ_POLLIN, 0}}};
     zmq_poll(items.data(), static_cast<int>(items.size()), static_cast<long>(wait));
-    if ((items[2].revents & ZMQ_POLLIN) != 0) signal.seen();
+    if ((items[2].revents & ZMQ_POLLIN) != 0) signal.drain();
 }
 
 }  // namespace tessera::net

@@ -63,11 +63,10 @@ class WakeSignal {
     ~WakeSignal();
     WakeSignal(const WakeSignal&) = delete;
     WakeSignal& operator=(const WakeSignal&) = delete;
-    void raise();  // thread-safe
-    bool take();   // true if raised since the last take()
-    // Its descriptor is readable: the thread that raises it may have been interrupted before it set the flag, and until
-    // it runs again every wait would end at once.
-    void seen() { raised_ = true; }
+    void raise();                                    // thread-safe
+    bool take() { return raised_.exchange(false); }  // true if raised since the last take()
+    // A wait that it has ended calls this. The flag of this write has been set before, and may have been taken.
+    void drain();
     int descriptor() const { return descriptor_; }
 
   private:

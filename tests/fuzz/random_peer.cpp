@@ -109,14 +109,10 @@ void RandomPeer::take(const wire::ControlMessage& message) {
         first_id_ = joined->first_id;
         id_count_ = joined->id_count;
         sequence_ = joined->last_sequence;
-        created_.clear();
+        created_.clear();  // known again as they are created
+        waiting_.clear();
     } else if (const auto* reply = std::get_if<wire::EditReply>(&message)) {
-        reached_.edits += reply->result.accepted ? 1 : 0;
-        constexpr std::string_view Expected = "expected ";
-        for (const std::string& problem : reply->result.problems) {
-            const std::size_t at = problem.find(Expected);
-            if (at != std::string::npos) sequence_ = std::stoull(problem.substr(at + Expected.size())) - 1;
-        }
+        answered(*reply);
     } else if (const auto* done = std::get_if<wire::RequestDone>(&message)) {
         reached_.requests += done->accepted ? 1 : 0;
     } else if (const auto* content = std::get_if<wire::SceneContent>(&message)) {
@@ -203,29 +199,51 @@ void RandomPeer::adjust_view(session::ViewRequest& wanted) {
     wanted = std::move(request);
 }
 
-// Most of them are accepted.
-std::vector<scene::Entry> RandomPeer::plain_entries() {
+// Of its own objects; most of them are accepted.
+std::vector<scene::Entry> RandomPeer::plain_entries(std::uint64_t sequence) {
     std::vector<scene::Entry> entries;
-    for (std::uint64_t i = random_.below(6); i > 0; --i) {
-        const ObjectId id{first_id_ + random_.below(64)};
-        const bool is_new = created_.insert(id).second;
+    std::set<ObjectId> touched;
+    for (std::uint64_t i = 1 + random_.below(5); i > 0; --i) {
         const auto name = "object " + std::to_string(random_.below(1000));
-        if (is_new) {
+        const bool creates = created_.empty() || chance(30);
+        const ObjectId id =
+            creates
+                ? ObjectId{first_id_ + next_object_++ % std::max<std::uint64_t>(1, id_count_)}
+                : *std::next(created_.begin(), static_cast<std::ptrdiff_t>(random_.below(created_.size())));
+        if (!touched.insert(id).second) continue;
+        if (creates) {
             entries.emplace_back(scene::Create{id, scene::Transform{.name = name}});
+            waiting_[sequence].created.push_back(id);
         } else if (chance(80)) {
-            scene::Transform moved;
+            scene::Transform moved{.name = name};
             moved.matrix[3] = {double(random_.below(1000)), 0, 0, 1};
-            moved.name = name;
             entries.emplace_back(scene::Update{
                 id,
                 scene::Fields<scene::Transform>(&scene::Transform::name, &scene::Transform::matrix).bits(),
                 moved});
         } else {
-            created_.erase(id);
             entries.emplace_back(scene::Remove{id});
+            waiting_[sequence].removed.push_back(id);
         }
     }
     return entries;
+}
+
+void RandomPeer::answered(const wire::EditReply& reply) {
+    const auto edit = waiting_.extract(reply.sequence);
+    if (reply.result.accepted) {
+        ++reached_.edits;
+        if (edit.empty()) return;
+        for (const ObjectId id : edit.mapped().removed) created_.erase(id);
+        created_.insert(edit.mapped().created.begin(), edit.mapped().created.end());
+        return;
+    }
+    // An edit that did not arrive leaves a gap.
+    constexpr std::string_view Expected = "expected ";
+    for (const std::string& problem : reply.result.problems) {
+        const std::size_t at = problem.find(Expected);
+        if (at != std::string::npos) sequence_ = std::stoull(problem.substr(at + Expected.size())) - 1;
+    }
 }
 
 void RandomPeer::adjust_edit(scene::Edit& edit) {
@@ -233,9 +251,11 @@ void RandomPeer::adjust_edit(scene::Edit& edit) {
     edit.undo = chance(80) ? 0 : chance(50) ? scene::UndoLatest : extreme();
     edit.edit_group = random_.below(3);
     if (edit.undo != 0 && chance(80)) edit.entries.clear();
-    if (edit.undo == 0 && chance(70)) edit.entries = plain_entries();
+    if (edit.undo == 0 && chance(70)) {
+        edit.entries = plain_entries(edit.sequence);
+        return;
+    }
     for (scene::Entry& entry : edit.entries) {
-        if (chance(70)) continue;
         std::visit([&](auto& each) { each.id = some_object(); }, entry);
         // Transforms and roots make graphs of any shape.
         if (auto* create = std::get_if<scene::Create>(&entry); create && chance(50)) {
@@ -305,6 +325,14 @@ bool RandomPeer::send_control() {
     }();
     const auto& kinds = Kinds.at(settings_.role);
     wire::ControlMessage message = kinds[random_.below(kinds.size())];
+    // Edits and views lead to the most, so that every fourth message is one.
+    if (joined_ && chance(25)) {
+        if (chance(50)) {
+            message = wire::RequestView{};
+        } else if (may_send(settings_.role, wire::Senders::Editors)) {
+            message = wire::SubmitEdit{};
+        }
+    }
     const bool ends = std::holds_alternative<wire::Goodbye>(message);
     if (ends && !chance(10)) message = wire::Heartbeat{};
     // A greeting ends the session; what comes after is for a new one.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -54,7 +55,8 @@ class RandomPeer {
     void adjust(Message& message);
     void adjust_view(session::ViewRequest& wanted);
     void adjust_edit(scene::Edit& edit);
-    std::vector<scene::Entry> plain_entries();
+    std::vector<scene::Entry> plain_entries(std::uint64_t sequence);
+    void answered(const wire::EditReply& reply);
     wire::FilmPart film();
     ObjectId some_object();
     Version some_version();
@@ -70,7 +72,12 @@ class RandomPeer {
     std::uint64_t token_ = 0, sequence_ = 0, first_id_ = 0, id_count_ = 0;
     Version version_;
     Hash128 state_hash_;
-    std::set<ObjectId> created_;
+    struct WaitingEdit {
+        std::vector<ObjectId> created, removed;
+    };
+    std::map<std::uint64_t, WaitingEdit> waiting_;  // by sequence
+    std::set<ObjectId> created_;                    // by edits that were accepted
+    std::uint64_t next_object_ = 0;
     std::vector<Hash256> blobs_;  // that the master named
     // of a node
     std::deque<view::WorkUnit> units_;
