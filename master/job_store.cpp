@@ -119,11 +119,17 @@ std::string JobStore::unused_name(const session::JobName& job) const {
     return candidate.name;
 }
 
-void JobStore::remove_expired(std::int64_t now) {
+void JobStore::remove_expired(std::int64_t since_1970, TimePoint now) {
     std::vector<session::JobName> expired;
-    for (const auto& [name, entry] : jobs_) {
-        const std::int64_t until = entry.job.status.kept_until;
-        if (until != 0 && until <= now) expired.push_back(name);
+    for (auto& [name, entry] : jobs_) {
+        const session::JobStatus& status = entry.job.status;
+        if (status.kept_until == 0) continue;
+        if (!entry.expires) {
+            const std::int64_t longest = std::max<std::int64_t>(0, status.kept_until - status.ended_at);
+            entry.expires =
+                now + Duration(std::clamp<std::int64_t>(status.kept_until - since_1970, 0, longest));
+        }
+        if (*entry.expires <= now) expired.push_back(name);
     }
     for (const session::JobName& job : expired) {
         events_({wire::Severity::Info,

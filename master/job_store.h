@@ -5,9 +5,11 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "master/peers/event.h"
+#include "mediator/base/clock.h"
 #include "mediator/base/task_thread.h"
 #include "mediator/session/jobs.h"
 #include "mediator/wire/journal_records.h"
@@ -22,6 +24,7 @@ class JobStore {
         wire::StoredJob job;
         std::shared_ptr<const std::vector<std::byte>> picture;  // never null; empty = no picture
         std::uint64_t order = 0;                                // by end time
+        std::optional<TimePoint> expires{};                     // known from the first remove_expired() on
     };
 
     explicit JobStore(EventSink events) : events_(std::move(events)) {}
@@ -37,7 +40,9 @@ class JobStore {
     bool remove(const session::JobName& job);  // false: no such job
     // The job's name, or with a number appended if a job of that name is stored.
     std::string unused_name(const session::JobName& job) const;
-    void remove_expired(std::int64_t now);  // ns since 1970
+    // `since_1970` in ns: of a job that was stored by an earlier master it says how long it is still kept. From then on `now`
+    // counts, so that a wall clock that is set removes nothing.
+    void remove_expired(std::int64_t since_1970, TimePoint now);
     // Jobs whose files were written since the last call.
     std::vector<session::JobName> take_written();
     std::vector<const Entry*> all() const;  // oldest first

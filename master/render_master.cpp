@@ -364,13 +364,15 @@ void RenderMaster::hello(const net::Message& message, wire::Hello hello, TimePoi
         return welcome(message.peer, session->id.value, session->token);
     }
     // A repeated Hello of a known peer (the reply to its first one was lost) starts a new session.
-    if (NodeRecord* node = nodes_.by_control(message.peer)) remove_node(node->id, "it reconnected", now);
+    if (NodeRecord* node = nodes_.by_control(message.peer))
+        remove_node(node->id, "it reconnected", Dispatcher::Departure::Expected, now);
     if (SessionRecord* session = sessions_.by_control(message.peer))
         remove_session(session->id, Views::DisconnectReason::Timeout, now);
     if (const std::string full = full_text(is_node, message); !full.empty()) return refuse(full);
     const std::uint64_t number = next_number_++;
     const std::uint64_t token = random_nonzero();
     if (is_node) {
+        if (const auto former = nodes_.removed(hello.resume_token)) dispatcher_.came_back(*former);
         events_({wire::Severity::Info,
                  "node " + hello.name + " joined (" + hello.backend + ", " + hello.kind + ")"});
         NodeRecord& node =

@@ -78,7 +78,7 @@ class RenderMaster {
                      TimePoint now);
     void from_member(SessionRecord& session, wire::ControlMessage& message, TimePoint now);
     void bulk_hello(const net::Message& message, const wire::BulkHello& hello);
-    void remove_node(NodeId id, const std::string& why, TimePoint now);
+    void remove_node(NodeId id, const std::string& why, Dispatcher::Departure departure, TimePoint now);
     void manage_node(const SessionRecord& session, const wire::ManageNode& order, TimePoint now);
     void remove_session(SessionId id, Views::DisconnectReason reason, TimePoint now);
     void heartbeats(TimePoint now);

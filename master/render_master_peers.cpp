@@ -21,7 +21,8 @@ void RenderMaster::from_node(NodeRecord& node, wire::ControlMessage& message, Ti
             case SceneDistributor::CheckResult::RemoveNode:
                 outbox_.control(node.control,
                                 wire::Refusal{"your scene differs from the master's: check the build"});
-                return remove_node(node.id, "its scene differs from the master's", now);
+                return remove_node(node.id, "its scene differs from the master's",
+                                   Dispatcher::Departure::Expected, now);
         }
     } else if (const auto* resync = std::get_if<wire::Resync>(&message)) {
         scene_.distributor().resync(node, *resync, now);
@@ -165,11 +166,16 @@ void RenderMaster::from_member(SessionRecord& session, wire::ControlMessage& mes
     }
 }
 
-void RenderMaster::remove_node(NodeId id, const std::string& why, TimePoint now) {
+void RenderMaster::remove_node(NodeId id, const std::string& why, Dispatcher::Departure departure,
+                               TimePoint now) {
     const NodeRecord* node = nodes_.find(id);
     if (node == nullptr) return;
-    const auto departure = node->leaving ? Dispatcher::Departure::Expected : Dispatcher::Departure::Sudden;
-    if (!node->leaving) events_({wire::Severity::Warning, "node " + node->hello.name + " is gone: " + why});
+    if (node->leaving) {
+        departure = Dispatcher::Departure::Expected;
+    } else {
+        events_({wire::Severity::Warning,
+                 "node " + node->hello.name + " is gone: " + why + dispatcher_.rendered_by(id)});
+    }
     outbox_.forget(net::Link::Control, node->control);
     if (node->bulk) outbox_.forget(net::Link::Bulk, *node->bulk);
     dispatcher_.node_gone(id, departure, now);
@@ -186,7 +192,8 @@ void RenderMaster::remove_session(SessionId id, Views::DisconnectReason reason, 
 }
 
 void RenderMaster::remove_timed_out_peers(TimePoint now) {
-    for (const NodeId id : nodes_.timed_out(now)) remove_node(id, "silent for too long", now);
+    for (const NodeId id : nodes_.timed_out(now))
+        remove_node(id, "silent for too long", Dispatcher::Departure::Silent, now);
     std::vector<SessionId> timed_out;
     for (const auto& [id, session] : sessions_.all()) {
         if (session.liveness.timed_out(now)) timed_out.push_back(id);
@@ -214,7 +221,7 @@ void RenderMaster::drop_lost_peers(TimePoint now) {
         if (now < broken_until_) continue;  // they gave this master up, not the other way round
         const bool is_control = link == net::Link::Control;
         if (NodeRecord* node = is_control ? nodes_.by_control(peer) : nodes_.by_bulk(peer)) {
-            remove_node(node->id, "its connection broke", now);
+            remove_node(node->id, "its connection broke", Dispatcher::Departure::Ended, now);
         } else if (SessionRecord* session =
                        is_control ? sessions_.by_control(peer) : sessions_.by_bulk(peer)) {
             remove_session(session->id, Views::DisconnectReason::Timeout, now);

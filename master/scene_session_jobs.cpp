@@ -112,7 +112,7 @@ void SceneSession::store_finished_jobs(TimePoint now) {
             views_.release(ended.view);
         }
     }
-    services_.jobs.remove_expired(since_1970());
+    services_.jobs.remove_expired(since_1970(), now);
     if (!is_editing()) record_job_ends(services_.jobs.take_written(), now);
 }
 

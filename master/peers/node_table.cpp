@@ -50,8 +50,17 @@ NodeRecord& NodeTable::add(NodeId id, std::uint64_t token, net::PeerId control, 
 }
 
 void NodeTable::remove(NodeId id) {
+    constexpr std::size_t MaxRemoved = 1024;
     const auto node = nodes_.extract(id);
-    if (node && !node.mapped().is_null) --renderers_;
+    if (!node) return;
+    if (!node.mapped().is_null) --renderers_;
+    removed_.emplace(id, node.mapped().token);
+    if (removed_.size() > MaxRemoved) removed_.erase(removed_.begin());
+}
+
+std::optional<NodeId> NodeTable::removed(std::uint64_t token) const {
+    const auto found = std::ranges::find(removed_, token, &std::pair<const NodeId, std::uint64_t>::second);
+    return found == removed_.end() ? std::nullopt : std::optional(found->first);
 }
 
 NodeRecord* NodeTable::find(NodeId id) {

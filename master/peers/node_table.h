@@ -85,6 +85,8 @@ class NodeTable {
     NodeRecord* by_control(net::PeerId peer);
     NodeRecord* by_bulk(net::PeerId peer);
     NodeRecord* by_token(std::uint64_t token);
+    // The node to which the token belonged until it was removed, if that is not long ago.
+    std::optional<NodeId> removed(std::uint64_t token) const;
     NodeRecord* find(NodeId id);
     std::map<NodeId, NodeRecord>& all() { return nodes_; }
     const std::map<NodeId, NodeRecord>& all() const { return nodes_; }
@@ -100,7 +102,8 @@ class NodeTable {
     net::LivenessSettings liveness_;
     StuckSettings stuck_;
     std::map<NodeId, NodeRecord> nodes_;
-    std::size_t renderers_ = 0;  // nodes that are not null
+    std::size_t renderers_ = 0;                // nodes that are not null
+    std::map<NodeId, std::uint64_t> removed_;  // and their tokens; bounded
 };
 
 }  // namespace tessera::master

@@ -141,7 +141,8 @@ void Dispatcher::collect_overdue(TimePoint now) {
         if (!node.stuck) continue;
         announce_stuck(node, now);
         verifier_.node_gone(id);
-        for (auto& [view, pass] : passes_) pass.scheduler.node_gone(id, node.capacity().workers);
+        for (auto& [view, pass] : passes_)
+            lose(pass, {.node = id, .rendering = node.capacity().workers, .now = now, .describe = {}});
     }
 }
 
@@ -189,19 +190,6 @@ void Dispatcher::goodbye(NodeRecord& node, const wire::Goodbye& goodbye) {
             if (std::find(sent.begin(), sent.end(), unit) != sent.end()) continue;
             pass.scheduler.end(unit, node.id, Fate::Cancelled);
         }
-    }
-}
-
-void Dispatcher::node_gone(NodeId id, Departure departure, TimePoint now) {
-    balancer_.forget(id);
-    verifier_.node_gone(id);
-    cancelled_.clear();  // some will never be confirmed
-    const NodeRecord* node = nodes_.find(id);
-    const std::uint32_t rendering =
-        departure == Departure::Sudden && node != nullptr ? node->capacity().workers : 0;
-    for (auto& [view, pass] : passes_) {
-        pass.scheduler.node_gone(id, rendering);
-        take_explained(pass.scheduler, now);
     }
 }
 

@@ -89,8 +89,16 @@ class Dispatcher {
     void collect_overdue(TimePoint now);  // and ends quarantines
     void released(NodeRecord& node, const wire::UnitReleased& release, TimePoint now);
     void goodbye(NodeRecord& node, const wire::Goodbye& goodbye);
-    enum class Departure { Expected, Sudden };  // sudden: something that it rendered may be the reason
+    // Unless it was expected, something that it rendered may be the reason.
+    enum class Departure {
+        Expected,
+        Silent,
+        Ended  // its process: its connection broke
+    };
     void node_gone(NodeId node, Departure departure, TimePoint now);
+    void came_back(NodeId former);  // the process of a lost node, which is not the fault of what it rendered
+    std::string rendered_by(
+        NodeId node) const;  // "; it rendered unit 3 (32x32 pixels at 64,0, samples 0..7)", or ""
     void send_film_taken();  // to nodes whose film was taken since the last call
 
     // ---- nodes in quarantine ----
@@ -121,6 +129,7 @@ class Dispatcher {
     Active* active(ViewId pass);
     Active* holder(UnitId unit);
     bool suits(const NodeRecord& node, const view::View& view, const NodeRequirements& requirements) const;
+    void lose(Active& pass, UnitLedger::Loss loss);
     bool ready(const NodeRecord& node, const view::View& view, const NodeRequirements& requirements) const;
     bool may_use_null_nodes(const view::View& view) const;
     std::string why_left_out(const NodeRecord& node, const Active& pass) const;

@@ -185,6 +185,73 @@ std::vector<std::string> Dispatcher::left_out(ViewId pass) const {
     return texts;
 }
 
+// ---- lost nodes ----
+
+namespace {
+
+std::string samples_text(const view::WorkUnit& unit) {
+    const Rect& tile = unit.tile;
+    return "unit " + std::to_string(unit.id.value) + " (" + std::to_string(tile.width) + "x" +
+           std::to_string(tile.height) + " pixels at " + std::to_string(tile.x) + "," +
+           std::to_string(tile.y) + ", samples " + std::to_string(unit.block.first) + ".." +
+           std::to_string(unit.block.first + unit.block.count() - 1) + ")";
+}
+
+}  // namespace
+
+std::string Dispatcher::rendered_by(NodeId id) const {
+    constexpr std::size_t MaxNamed = 8;
+    const NodeRecord* node = nodes_.find(id);
+    if (node == nullptr) return {};
+    std::string text;
+    for (const auto& [view, pass] : passes_) {
+        const std::vector<UnitId> held = pass.scheduler.held_by(id);
+        const std::size_t count = std::min<std::size_t>(held.size(), node->capacity().workers);
+        for (std::size_t i = 0; i < count && i < MaxNamed; ++i)
+            text += (text.empty() ? "; it rendered " : ", ") +
+                    samples_text(pass.scheduler.ledger().find(held[i])->unit);
+        if (count > MaxNamed) text += " and " + std::to_string(count - MaxNamed) + " more";
+    }
+    return text;
+}
+
+void Dispatcher::node_gone(NodeId id, Departure departure, TimePoint now) {
+    balancer_.forget(id);
+    verifier_.node_gone(id);
+    cancelled_.clear();  // some will never be confirmed
+    const NodeRecord* node = nodes_.find(id);
+    const std::uint32_t rendering =
+        departure != Departure::Expected && node != nullptr ? node->capacity().workers : 0;
+    for (auto& [view, pass] : passes_) {
+        lose(pass, {.node = id,
+                    .rendering = rendering,
+                    .has_ended = departure == Departure::Ended,
+                    .now = now,
+                    .describe = {}});
+        take_explained(pass.scheduler, now);
+    }
+}
+
+void Dispatcher::lose(Active& pass, UnitLedger::Loss loss) {
+    const NodeRecord* node = nodes_.find(loss.node);
+    loss.describe = [&](const view::WorkUnit& unit) {
+        return samples_text(unit) + " failed: node " + (node == nullptr ? "" : node->hello.name) +
+               " and others " + (loss.has_ended ? "ended" : "vanished") +
+               " while they rendered it; replay it with: tessera probe SCENE --pixel " +
+               std::to_string(unit.tile.x) + "," + std::to_string(unit.tile.y) + " --sample " +
+               std::to_string(unit.block.first) + " --seed " + std::to_string(pass.view.seed);
+    };
+    const std::size_t before = pass.scheduler.failed_tiles().size();
+    pass.scheduler.node_gone(loss);
+    const auto& failed = pass.scheduler.failed_tiles();
+    for (std::size_t i = before; i < failed.size(); ++i)
+        events_({wire::Severity::Error, "a tile is left out: " + failed[i].message});
+}
+
+void Dispatcher::came_back(NodeId former) {
+    for (auto& [view, pass] : passes_) pass.scheduler.came_back(former);
+}
+
 // ---- stuck nodes ----
 
 // What its units may take until one of them is finished.

@@ -145,12 +145,28 @@ TEST_F(JobStoreTest, JobsOfLostClientsExpireAndOthersStay) {
     jobs.add(wire::StoredJob(lost), picture(5));
     EXPECT_EQ(jobs.unused_name({"ann", "lost"}), "lost (2)");
     EXPECT_EQ(jobs.unused_name({"bob", "lost"}), "lost");
-    jobs.remove_expired(99);
+    const TimePoint start{};
+    jobs.remove_expired(60, start);
+    jobs.remove_expired(std::int64_t{1} << 60, start + Duration(39));  // the wall clock was set
     EXPECT_EQ(jobs.all().size(), 2u);
-    jobs.remove_expired(100);
+    jobs.remove_expired(0, start + Duration(40));
     ASSERT_EQ(jobs.all().size(), 1u);
     EXPECT_EQ(jobs.all()[0]->job.status.job.name, "kept");
     EXPECT_EQ(reported.size(), 1u);
+}
+
+// Before a restart the wall clock was set back by a year: the job is kept as long as it was to be, from now on.
+TEST_F(JobStoreTest, ARestoredJobIsNotKeptLongerThanPromised) {
+    JobStore jobs(events);
+    wire::StoredJob lost = job("ann", "lost", 1'000'000);
+    lost.status.kept_until = 1'000'100;
+    jobs.add(std::move(lost), picture(5));
+    const TimePoint start{};
+    jobs.remove_expired(0, start);
+    jobs.remove_expired(0, start + Duration(99));
+    EXPECT_EQ(jobs.all().size(), 1u);
+    jobs.remove_expired(0, start + Duration(100));
+    EXPECT_TRUE(jobs.all().empty());
 }
 
 }  // namespace

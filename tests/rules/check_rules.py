@@ -104,6 +104,9 @@ NOT_SHARED = [
     (re.compile(r"\b(a?sin|a?cos|a?tan|exp2?|log2?|pow|inversesqrt|normalize|length|distance)\s*\("),
      "a driver's function: take that of maths.h"),
 ]
+# A wall clock may be set at any time, so nothing waits by it: deadlines and intervals use Clock. since_1970() is for dates.
+WALL_CLOCK = re.compile(r"\bsystem_clock\b|\bCLOCK_REALTIME\b|\bgettimeofday\b|\bhigh_resolution_clock\b")
+WALL_CLOCK_FILE = "mediator/base/clock.h"
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
@@ -175,6 +178,8 @@ def check_code(path, lines):
                 yield f"{path}:{number}: include of {included} {reason}"
         elif path.endswith(".h") and re.match(r"\s*using\s+namespace\b", line):
             yield f"{path}:{number}: using namespace in a header"
+        elif path != WALL_CLOCK_FILE and not path.startswith("tests/") and WALL_CLOCK.search(line):
+            yield f"{path}:{number}: only {WALL_CLOCK_FILE} reads the wall clock"
     if path.endswith(".h") and {"SHADING_BEGIN", "RECORDS_BEGIN"} & {line.strip() for line in lines}:
         yield from check_shared(path, lines)
     elif path.endswith(".h") and not any(line.strip() == "#pragma once" for line in lines):

@@ -61,6 +61,7 @@ PLANTED = [
     ("node/a.cpp", '#include "../master/master.h"\n', "root"),
     ("unheard/of/a.cpp", '#include "mediator/base/ids.h"\n', "no rule"),
     ("node/a.h", HEADER + "using namespace std;\n", "using namespace"),
+    ("node/a.cpp", "const auto end = std::chrono::system_clock::now() + Limit;\n", "wall clock"),
     ("node/a.h", "struct A {};\n", "pragma once"),
     ("mediator/shading/a.h", HEADER + "SHADING_BEGIN\n", "TESSERA_MEDIATOR_SHADING_A_H"),
     ("mediator/shading/a.h", GUARD + "inline float f(float x) {\n    return sin(x);\n}\n", "maths.h"),

@@ -65,6 +65,7 @@ class Plan {
     const std::map<NodeId, Claim>& claims() const { return claims_; }
     // The node gets no more pieces of its claim: others will.
     void release_claim(NodeId node);
+    const std::deque<Chunk>& returned() const { return returned_; }
     // Gives the upper half of what is left of the victim's claim, or all if it is a single sample, to a node without
     // a claim.
     void take_over(NodeId node, NodeId victim);

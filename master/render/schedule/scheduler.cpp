@@ -82,6 +82,31 @@ std::optional<Assignment> Scheduler::deal(const NodeCapacity& node, std::span<co
     return std::nullopt;
 }
 
+// Of a tile with samples that may have cost a node, these are dealt first, and to one node at a time; so the next loss
+// says more, and costs no further node.
+class Scheduler::DoubtfulTiles {
+  public:
+    DoubtfulTiles(const Scheduler& scheduler, NodeId node) : ledger_(scheduler.ledger_), node_(node) {
+        if (!ledger_.has_losses()) return;
+        has_suspect_ = ledger_.holds_suspect(node);
+        for (const Plan::Chunk& chunk : scheduler.plan_.returned()) {
+            if (ledger_.lives(chunk.trouble) > 0) waiting_.insert(chunk.tile);
+        }
+    }
+    bool may_go(const Plan::Chunk& chunk) const {
+        if (!ledger_.has_losses()) return true;
+        if (has_suspect_ && ledger_.is_suspect(chunk.trouble)) return false;
+        const bool waits_for_others = ledger_.lives(chunk.trouble) == 0 && waiting_.contains(chunk.tile);
+        return !waits_for_others && !ledger_.others_have_doubtful(chunk.tile, node_);
+    }
+
+  private:
+    const UnitLedger& ledger_;
+    NodeId node_;
+    bool has_suspect_ = false;
+    std::set<std::uint32_t> waiting_;
+};
+
 std::optional<Plan::Chunk> Scheduler::next_chunk(const NodeCapacity& node,
                                                  std::span<const NodeCapacity> nodes,
                                                  const Balancer& balancer) {
@@ -90,8 +115,10 @@ std::optional<Plan::Chunk> Scheduler::next_chunk(const NodeCapacity& node,
     const std::size_t pixels =
         std::max<std::size_t>(1, plan_.tiles().empty() ? 1 : plan_.tiles()[0].pixel_count());
     const std::uint64_t count = std::max<std::uint64_t>(1, samples / pixels);
+    const DoubtfulTiles doubtful(*this, node.node);
     // What failed on a node goes to another one, unless there is none.
     const auto may_go = [&](const Plan::Chunk& chunk) {
+        if (!doubtful.may_go(chunk)) return false;
         return !chunk.trouble || !chunk.trouble->has_failed_on(node.node) ||
                std::all_of(nodes.begin(), nodes.end(), [&](const NodeCapacity& other) {
                    return chunk.trouble->has_failed_on(other.node);
@@ -191,7 +218,8 @@ std::optional<Assignment> Scheduler::duplicate(NodeId node, std::span<const Node
     for (const auto& [id, unit] : ledger_.open()) {
         const bool has_failed_here = unit.trouble && unit.trouble->has_failed_on(node);
         if (unit.is_covered || unit.holders.contains(node) || has_failed_here) continue;
-        double done = Forecast::Never;  // by the first of its holders
+        if (ledger_.lives(unit.trouble) > 0) continue;  // one node at a time: see DoubtfulTiles
+        double done = Forecast::Never;                  // by the first of its holders
         for (const auto& [holder, since] : unit.holders) done = std::min(done, forecast.end(id, holder));
         if (unit.holders.size() > 1 && done < Forecast::Never) continue;
         // Take the unit that the slowest holder was given last: the least likely to have been started. It splits the
@@ -239,16 +267,16 @@ bool Scheduler::failed(UnitId unit, NodeId node, UnitTrouble::Kind kind, const s
     return held;
 }
 
-void Scheduler::node_gone(NodeId node, std::uint32_t workers) {
-    plan_.release_claim(node);
-    ledger_.node_gone(node, workers, "nodes vanished while they rendered it");
+void Scheduler::node_gone(const UnitLedger::Loss& loss) {
+    plan_.release_claim(loss.node);
+    ledger_.node_gone(loss);
     collect_returned();
 }
 
 void Scheduler::collect_returned() {
     for (UnitLedger::Returned& returned : ledger_.take_returned()) {
         if (closed_) continue;
-        if (returned.trouble && returned.trouble->is_settled()) {
+        if (returned.trouble && ledger_.is_settled(*returned.trouble)) {
             ledger_.blame_samples(returned.trouble);
             // Later samples of the tile would fail on the next nodes, too.
             give_up({returned.tile, returned.block, returned.trouble->message});

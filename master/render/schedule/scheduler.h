@@ -54,7 +54,8 @@ class Scheduler {
     // The node could not render the unit. A tile that fails on two nodes is given up: see failed_tiles().
     bool failed(UnitId unit, NodeId node, UnitTrouble::Kind kind, const std::string& message);
     // `workers`: how many units it may have been rendering when it vanished; 0: it left in order.
-    void node_gone(NodeId node, std::uint32_t workers);
+    void node_gone(const UnitLedger::Loss& loss);
+    void came_back(NodeId node) { ledger_.came_back(node); }  // under another id
     std::vector<UnitId> held_by(NodeId node) const { return ledger_.held_by(node); }
     const UnitLedger& ledger() const { return ledger_; }
 
@@ -93,6 +94,7 @@ class Scheduler {
                                           const Balancer& balancer);
     bool take_over_a_claim(const NodeCapacity& node, std::span<const NodeCapacity> nodes,
                            const Balancer& balancer);
+    class DoubtfulTiles;
     class Forecast;
     std::optional<Assignment> duplicate(NodeId node, std::span<const NodeCapacity> nodes,
                                         const Balancer& balancer, TimePoint now);

@@ -209,20 +209,57 @@ bool UnitLedger::fail(UnitId unit, NodeId node, UnitTrouble::Kind kind, const st
         trouble = std::make_shared<const UnitTrouble>(std::move(more));
         if (!trouble->failed_on.empty()) unexplained_.insert(trouble);
     }
-    close(entry, node, kind == UnitTrouble::Kind::Vanished ? Fate::Lost : Fate::Refused);
+    close(entry, node, kind == UnitTrouble::Kind::Failed ? Fate::Refused : Fate::Lost);
     return true;
 }
 
-void UnitLedger::node_gone(NodeId node, std::uint32_t rendering, const std::string& message) {
-    const std::vector<UnitId> units = held_by(node);  // ids ascend in the order of dealing
-    for (std::size_t i = 0; i < units.size(); ++i) {
-        if (i < rendering) {
-            fail(units[i], node, UnitTrouble::Kind::Vanished, message);
+void UnitLedger::node_gone(const Loss& loss) {
+    // What was dealt to a node that had ended already never reached it.
+    constexpr Duration MinHeld = std::chrono::milliseconds(20);
+    std::vector<UnitId> rendered;
+    for (const UnitId id : held_by(loss.node)) {  // ids ascend in the order of dealing
+        const Duration held = loss.now - open_.at(id).holders.at(loss.node);
+        const bool may_be = rendered.size() < loss.rendering && (!loss.has_ended || held >= MinHeld);
+        if (may_be) {
+            rendered.push_back(id);
         } else {
-            end(units[i], node, Fate::Lost);
+            end(id, loss.node, Fate::Lost);
         }
     }
-    by_node_.erase(node);
+    const std::optional<UnitId> killer = loss.has_ended ? most_suspect(rendered) : std::nullopt;
+    has_losses_ = has_losses_ || !rendered.empty();
+    for (const UnitId id : rendered) {
+        fail(id, loss.node, id == killer ? UnitTrouble::Kind::Killed : UnitTrouble::Kind::Vanished,
+             loss.describe ? loss.describe(open_.at(id).unit) : "");
+    }
+    by_node_.erase(loss.node);
+}
+
+std::optional<UnitId> UnitLedger::most_suspect(const std::vector<UnitId>& units) const {
+    std::optional<UnitId> suspect;
+    std::size_t most = 0;
+    for (const UnitId id : units) {
+        const std::size_t count = lives(open_.at(id).trouble);
+        if (count == most) suspect.reset();
+        if (count <= most) continue;
+        suspect = id;
+        most = count;
+    }
+    return suspect;
+}
+
+bool UnitLedger::others_have_doubtful(std::uint32_t tile, NodeId node) const {
+    return std::ranges::any_of(open_of_tile_[tile], [&](UnitId id) {
+        const Unit& unit = open_.at(id);
+        return !unit.is_covered && lives(unit.trouble) > 0 &&
+               std::ranges::any_of(unit.holders, [&](const auto& holder) { return holder.first != node; });
+    });
+}
+
+bool UnitLedger::holds_suspect(NodeId node) const {
+    const auto held = by_node_.find(node);
+    return held != by_node_.end() &&
+           std::ranges::any_of(held->second, [&](UnitId unit) { return is_suspect(open_.at(unit).trouble); });
 }
 
 std::vector<Cancellation> UnitLedger::end_all() {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -67,6 +68,13 @@ class UnitLedger {
         bool is_to_blame = false;  // another node managed what this one failed
         std::string message;
     };
+    struct Loss {
+        NodeId node;
+        std::uint32_t rendering = 0;  // how many of its oldest units it may have been rendering
+        bool has_ended = false;       // its process, as its connection says; else it is silent
+        TimePoint now{};
+        std::function<std::string(const view::WorkUnit&)> describe;  // the failure of a unit, for its user
+    };
     struct Unit {
         view::WorkUnit unit;
         std::uint32_t tile = 0;
@@ -96,8 +104,20 @@ class UnitLedger {
     // The same for its units of which the block has samples: that film was admitted, but not merged.
     void end_film(NodeId node, std::uint32_t tile, const frame::SampleBlock& block, Fate fate);
     bool fail(UnitId unit, NodeId node, UnitTrouble::Kind kind, const std::string& message);
-    // All its units are lost. `rendering`: how many of the oldest it may have been rendering when it vanished.
-    void node_gone(NodeId node, std::uint32_t rendering, const std::string& message);
+    // All its units are lost. If its process ended, and of those that it rendered one had cost more nodes before than any
+    // other, that one has killed it.
+    void node_gone(const Loss& loss);
+    void came_back(NodeId node) { survivors_.insert(node); }  // a lost one: it had lost its connection
+    bool is_settled(const UnitTrouble& trouble) const { return trouble.is_settled(survivors_); }
+    // It has cost two nodes, but nothing says that others did not: see UnitTrouble.
+    bool is_suspect(const std::shared_ptr<const UnitTrouble>& trouble) const { return lives(trouble) >= 2; }
+    bool holds_suspect(NodeId node) const;
+    std::size_t lives(const std::shared_ptr<const UnitTrouble>& trouble) const {
+        return trouble ? trouble->lives(survivors_) : 0;
+    }
+    bool has_losses() const { return has_losses_; }
+    // Another node has samples of the tile that may have cost one.
+    bool others_have_doubtful(std::uint32_t tile, NodeId node) const;
     // Ends all units; film of theirs is no longer admitted. Returns their holders.
     std::vector<Cancellation> end_all();
     // The samples of `trouble` are to blame.
@@ -127,6 +147,7 @@ class UnitLedger {
     void hold(UnitId id, Unit& unit, NodeId node, TimePoint now);
     void close(std::map<UnitId, Unit>::iterator entry, NodeId node, Fate fate);
     void forget_former(std::uint32_t tile);
+    std::optional<UnitId> most_suspect(const std::vector<UnitId>& units) const;
     void explain(const std::shared_ptr<const UnitTrouble>& trouble, bool nodes_are_to_blame);
     template <class Visit>
     void for_each_of(NodeId node, std::uint32_t tile, const Visit& visit);
@@ -142,6 +163,8 @@ class UnitLedger {
     std::map<NodeId, std::set<UnitId>> by_node_;
     std::vector<BlockSet> arrived_;  // by tile
     std::set<std::shared_ptr<const UnitTrouble>> unexplained_;
+    std::set<NodeId> survivors_;
+    bool has_losses_ = false;
     std::vector<Returned> returned_;
     std::vector<Explained> explained_;
     std::uint64_t arrived_samples_ = 0, in_flight_ = 0;

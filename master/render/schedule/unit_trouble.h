@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,29 +14,39 @@ namespace tessera::master {
 // fail everywhere from samples that fail on every node.
 struct UnitTrouble {
     enum class Kind : std::uint8_t {
-        Failed,   // the back-end gave an error
-        Crashed,  // the node reported that its back-end crashed on it
-        Vanished  // the node disappeared while it may have been rendering it; most likely for another reason
+        Failed,    // the back-end gave an error
+        Vanished,  // the node disappeared while it may have been rendering it; most likely for another reason
+        Killed     // the same, and nothing else that the node rendered had cost as many nodes before
     };
-    std::vector<NodeId> failed_on;  // failures and crashes, each node once
-    std::uint32_t failures = 0, crashes = 0, vanished = 0;
-    std::string message;  // of the latest failure
+    std::vector<NodeId> failed_on;  // each node once
+    std::uint32_t failures = 0;
+    std::vector<NodeId> lost_with;  // nodes that disappeared; those that join later have other ids
+    bool has_killed = false;
+    std::string message;  // of the latest failure; of the latest loss if there is none
 
     void add(Kind kind, NodeId node, const std::string& text) {
-        ++(kind == Kind::Failed ? failures : kind == Kind::Crashed ? crashes : vanished);
-        if (kind == Kind::Vanished) {
-            if (message.empty()) message = text;
-            return;
+        if (kind == Kind::Failed) {
+            ++failures;
+            if (!has_failed_on(node)) failed_on.push_back(node);
+        } else {
+            lost_with.push_back(node);
+            has_killed = has_killed || kind == Kind::Killed;
         }
-        if (!has_failed_on(node)) failed_on.push_back(node);
-        message = text;
+        if (kind == Kind::Failed || failures == 0) message = text;
     }
     bool has_failed_on(NodeId node) const {
         return std::find(failed_on.begin(), failed_on.end(), node) != failed_on.end();
     }
-    // The samples are to blame, not the nodes: they failed on two (on one twice if there is no other). Nodes that vanish
-    // without a word (a lost connection, a preempted machine) are evidence only when there are three in a row.
-    bool is_settled() const { return failures + crashes >= 2 || vanished >= 3; }
+    // `survivors` only lost their connection.
+    std::size_t lives(const std::set<NodeId>& survivors) const {
+        return static_cast<std::size_t>(
+            std::ranges::count_if(lost_with, [&](NodeId node) { return !survivors.contains(node); }));
+    }
+    // The samples are to blame, not the nodes: they failed on two (on one twice if there is no other), or have killed two.
+    // Nodes that vanish for any reason (a lost connection, a preempted machine) are evidence only when there are three.
+    bool is_settled(const std::set<NodeId>& survivors) const {
+        return failures >= 2 || has_killed || lives(survivors) >= 3;
+    }
 };
 
 }  // namespace tessera::master

@@ -227,7 +227,7 @@ TEST_F(DispatcherTest, FilmThatWasNotAskedForIsRefusedAndItsSenderQuarantined) {
     EXPECT_EQ(channel.all<wire::FilmTaken>()[0].bytes, 4000u) << "dropped film leaves room, too";
     EXPECT_TRUE(admit(1, head(unit)));
     // Under another number it is the same node.
-    dispatcher.node_gone(liar.id, Dispatcher::Departure::Sudden, now);
+    dispatcher.node_gone(liar.id, Dispatcher::Departure::Silent, now);
     nodes.remove(NodeId{2});
     wire::Hello hello{.name = "node-2", .channels = {frame::Channel::Color}};
     NodeRecord& back = nodes.add(NodeId{3}, 3, 3, "node", std::move(hello), now);

@@ -181,7 +181,7 @@ void SimulatedCluster::kill(std::size_t who) {
     state.running.clear();
     state.held.clear();
     balancer_.forget(NodeId{who + 1});
-    scheduler_.node_gone(NodeId{who + 1}, 0);
+    scheduler_.node_gone({.node = NodeId{who + 1}, .describe = {}});
     std::erase_if(events_, [&](const auto& entry) { return entry.second.node == who; });
 }
 

@@ -71,7 +71,7 @@ TEST_F(UnitLedgerTest, FilmMayReplaceOnlyPartsOfItsOwnUnits) {
 
 TEST_F(UnitLedgerTest, LateFilmOfALostUnitIsStillAdmitted) {
     const UnitId unit = deal(A, 0, {0, 2});
-    ledger.node_gone(A, 0, "");
+    ledger.node_gone({.node = A, .describe = {}});
     EXPECT_EQ(ledger.counts().lost, 1u);
     EXPECT_EQ(admit(A, unit, 0, {0, 2}).problem, "");
     (void)ledger.arrived(A, 0, {0, 2});
@@ -102,7 +102,7 @@ TEST_F(UnitLedgerTest, AFailureIsTheNodesFaultIfAnotherSucceeds) {
     EXPECT_EQ(ledger.unexplained_failures(A), 1u);
     const auto returned = ledger.take_returned();
     ASSERT_EQ(returned.size(), 1u);
-    EXPECT_FALSE(returned[0].trouble->is_settled());
+    EXPECT_FALSE(ledger.is_settled(*returned[0].trouble));
     const UnitId again = ledger.next_unit();
     ledger.deal({.id = again, .version = SceneVersion, .tile = tiles[0], .block = {0, 2}}, 0,
                 returned[0].trouble, B, {});
@@ -119,16 +119,66 @@ TEST_F(UnitLedgerTest, AFailureIsTheNodesFaultIfAnotherSucceeds) {
 TEST(UnitTrouble, BlamesTheSamplesAfterTwoFailuresOrThreeVanishedNodes) {
     UnitTrouble trouble;
     trouble.add(UnitTrouble::Kind::Failed, NodeId{1}, "no");
-    EXPECT_FALSE(trouble.is_settled());
-    trouble.add(UnitTrouble::Kind::Crashed, NodeId{2}, "boom");
-    EXPECT_TRUE(trouble.is_settled());
+    EXPECT_FALSE(trouble.is_settled({}));
+    trouble.add(UnitTrouble::Kind::Failed, NodeId{2}, "boom");
+    EXPECT_TRUE(trouble.is_settled({}));
     EXPECT_EQ(trouble.message, "boom");
-    UnitTrouble killed;
-    for (const std::uint64_t node : {1u, 2u}) killed.add(UnitTrouble::Kind::Vanished, NodeId{node}, "gone");
-    EXPECT_FALSE(killed.is_settled()) << "machines that are preempted";
-    killed.add(UnitTrouble::Kind::Vanished, NodeId{3}, "gone");
-    EXPECT_TRUE(killed.is_settled());
-    EXPECT_FALSE(killed.has_failed_on(NodeId{3}));
+    UnitTrouble lost;
+    for (const std::uint64_t node : {1u, 2u}) lost.add(UnitTrouble::Kind::Vanished, NodeId{node}, "gone");
+    EXPECT_FALSE(lost.is_settled({})) << "machines that are preempted";
+    lost.add(UnitTrouble::Kind::Vanished, NodeId{3}, "gone");
+    EXPECT_TRUE(lost.is_settled({}));
+    EXPECT_FALSE(lost.is_settled({NodeId{2}})) << "one of them had lost its connection";
+    EXPECT_FALSE(lost.has_failed_on(NodeId{3}));
+}
+
+TEST_F(UnitLedgerTest, SamplesThatWereRenderedAsTwoProcessesEndedAreToBlame) {
+    const TimePoint later = TimePoint{} + std::chrono::seconds(1);
+    const auto deal = [&](NodeId node, std::uint32_t tile, std::shared_ptr<const UnitTrouble> trouble) {
+        ledger.deal({.id = ledger.next_unit(), .version = Scene, .tile = tiles[tile], .block = {0, 2}}, tile,
+                    std::move(trouble), node, {});
+    };
+    const auto ends = [&](NodeId node, TimePoint now) {
+        ledger.node_gone({.node = node, .rendering = 2, .has_ended = true, .now = now, .describe = {}});
+        return ledger.take_returned();
+    };
+    deal(A, 0, nullptr);
+    deal(A, 1, nullptr);
+    auto lost = ends(A, later);
+    ASSERT_EQ(lost.size(), 2u);
+    for (const auto& returned : lost) EXPECT_FALSE(ledger.is_settled(*returned.trouble));
+    deal(B, 0, lost[0].trouble);
+    auto unreceived = ends(B, TimePoint{});
+    ASSERT_EQ(unreceived.size(), 1u);
+    EXPECT_EQ(unreceived[0].trouble, lost[0].trouble) << "B had ended before";
+
+    deal(B, 0, lost[0].trouble);
+    deal(B, 1, lost[1].trouble);
+    lost = ends(B, later);
+    ASSERT_EQ(lost.size(), 2u);
+    for (const auto& returned : lost) {
+        EXPECT_FALSE(ledger.is_settled(*returned.trouble)) << "it may have been the other one";
+        EXPECT_TRUE(ledger.is_suspect(returned.trouble));
+    }
+    deal(NodeId{9}, lost[0].tile, lost[0].trouble);
+    EXPECT_TRUE(ledger.holds_suspect(NodeId{9}));
+    lost = ends(NodeId{9}, later);
+    ASSERT_EQ(lost.size(), 1u);
+    EXPECT_TRUE(ledger.is_settled(*lost[0].trouble));
+}
+
+TEST_F(UnitLedgerTest, AProcessThatComesBackWasNotKilled) {
+    const TimePoint later = TimePoint{} + std::chrono::seconds(1);
+    std::shared_ptr<const UnitTrouble> trouble;
+    for (std::uint64_t node = 20; node < 26; ++node) {
+        ledger.deal({.id = ledger.next_unit(), .version = Scene, .tile = tiles[0], .block = {0, 2}}, 0,
+                    trouble, NodeId{node}, {});
+        ledger.node_gone(
+            {.node = NodeId{node}, .rendering = 1, .has_ended = true, .now = later, .describe = {}});
+        trouble = ledger.take_returned().at(0).trouble;
+        EXPECT_FALSE(ledger.is_settled(*trouble));
+        ledger.came_back(NodeId{node});
+    }
 }
 
 // Whatever happens in whatever order, every unit dealt to a node ends exactly once, and all samples arrive.
@@ -176,7 +226,7 @@ TEST_F(UnitLedgerTest, EveryHoldingEndsExactlyOnce) {
                     units.fail(id, node, UnitTrouble::Kind::Failed, "no");
                     break;
                 case 3:
-                    units.node_gone(node, 2, "gone");
+                    units.node_gone({.node = node, .rendering = 2, .describe = {}});
                     break;
                 case 4: {  // stopped after its first half
                     const SampleBlock part{unit.unit.block.first,
