@@ -74,13 +74,14 @@ CheckpointResult CheckpointWriter::write(CheckpointJob job) const {
         state.title = std::move(job.scene.title);
         state.owner = std::move(job.scene.owner);
         state.views = std::move(job.views);
+        std::set<Hash256> blobs;
+        for (const scene::BlobRef& blob : referenced_blobs(job.authority)) blobs.insert(blob.hash);
         check_lease();
+        if (stored_ && job.blobs) stored_->write_lost_again(blobs, *job.blobs);
         result.byte_size = write_checkpoint(checkpoint_path(folder_, job.number), job.number, state);
         check_lease();
         remove_outdated(folder_);
         if (stored_) {
-            std::set<Hash256> blobs;
-            for (const scene::BlobRef& blob : referenced_blobs(job.authority)) blobs.insert(blob.hash);
             stored_->written(job.number, std::move(blobs));
             stored_->remove_unused();
         }

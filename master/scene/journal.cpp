@@ -22,16 +22,20 @@ Journal::Journal(const std::filesystem::path& folder, std::shared_ptr<const scen
     sync_folder(folder_);
 }
 
-void Journal::sync_folder(const std::filesystem::path& folder) {
+void Journal::sync_folder(const std::filesystem::path& folder, std::function<void()> failed) {
     const auto file =
         std::make_shared<FileHandle>(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    if (file->descriptor() >= 0) sync_.soon(file);
+    if (file->descriptor() >= 0) sync_.soon(file, std::move(failed));
+}
+
+Expected<void> Journal::check_disk() const {
+    const std::string problem = sync_.problem();
+    if (problem.empty()) return {};
+    return failure(ErrorCode::Io, problem + "; edits are accepted again when a checkpoint can be written");
 }
 
 Expected<void> Journal::append(const wire::JournalRecord& record) {
-    if (const std::string problem = sync_.problem(); !problem.empty())
-        return failure(ErrorCode::Io,
-                       problem + "; edits are accepted again when a checkpoint can be written");
+    if (auto checked = check_disk(); !checked) return checked;
     std::vector<std::byte> bytes;
     try {
         bytes = wire::encode(record);
@@ -61,11 +65,13 @@ Expected<void> Journal::keep_blobs(const std::vector<scene::Entry>& entries) {
             if (auto written = stored_->write(*blob); !written) return written;
             const auto file = std::make_shared<FileHandle>(
                 ::open(scene::blob_path(folder, reference).c_str(), O_RDONLY | O_CLOEXEC));
-            if (file->descriptor() >= 0) sync_.soon(file);
+            if (file->descriptor() >= 0) {
+                sync_.soon(file, [stored = stored_, hash = reference.hash] { stored->sync_failed(hash); });
+            }
             wrote = true;
         }
     }
-    if (wrote) sync_folder(blobs_path(folder_));
+    if (wrote) sync_folder(blobs_path(folder_), [stored = stored_] { stored->sync_failed_of_all(); });
     return {};
 }
 
@@ -74,6 +80,7 @@ Expected<void> Journal::joined(const wire::RecordedEditor& editor) {
 }
 
 Expected<void> Journal::edited(const RecordedEdit& edit) {
+    if (auto checked = check_disk(); !checked) return checked;
     if (auto kept = keep_blobs(edit.entries); !kept) return kept;
     return append(edit);
 }

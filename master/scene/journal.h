@@ -33,15 +33,18 @@ class Journal final : public EditRecorder {
     // before. Throws Error{Io}, or Error{Unavailable} when another master records in the folder, and then keeps using
     // the old segment.
     std::uint64_t start_segment();
-    // Why nothing is recorded any more; "" = it is. A checkpoint that was written since holds everything: recovered().
+    // Why nothing is recorded any more; "" = it is. A checkpoint holds everything if no more failures followed its start:
+    // recovered().
     std::string problem() const { return sync_.problem(); }
+    std::uint64_t failures() const { return sync_.failures(); }
     void recovered() { sync_.forget_problem(); }
     std::uint64_t byte_size() const { return earlier_bytes_ + segment_.byte_size(); }  // of this journal
 
   private:
     Expected<void> append(const wire::JournalRecord& record);
     Expected<void> keep_blobs(const std::vector<scene::Entry>& entries);
-    void sync_folder(const std::filesystem::path& folder);
+    Expected<void> check_disk() const;
+    void sync_folder(const std::filesystem::path& folder, std::function<void()> failed = {});
 
     const std::filesystem::path folder_;
     std::shared_ptr<const scene::BlobStore> blobs_;

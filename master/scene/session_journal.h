@@ -48,6 +48,7 @@ class SessionJournal {
     SceneAuthority& authority_;
     EventSink events_;
     Recovery recovery_;
+    std::shared_ptr<const scene::BlobStore> blobs_;
     std::shared_ptr<StoredBlobs> stored_;
     std::optional<Journal> journal_;
     CheckpointWriter writer_;
@@ -57,6 +58,7 @@ class SessionJournal {
     bool is_open_ = false, last_write_failed_ = false;
     bool lost_ = false;  // to another master
     std::uint64_t checkpoints_ = 0;
+    std::uint64_t failures_at_start_ = 0;  // of the disk, when the checkpoint was begun that is being written
 };
 
 }  // namespace tessera::master

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,11 +41,47 @@ bool StoredBlobs::use(const Hash256& blob, std::uint64_t segment) {
 }
 
 Expected<void> StoredBlobs::write(const scene::Blob& blob) {
+    const auto is_lost = [&] {
+        const std::scoped_lock lock(mutex_);
+        return lost_.contains(blob.hash());
+    };
     // Not locked: remove_unused() leaves what is in use.
-    if (auto written = scene::write_blob(blobs_path(folder_), blob); !written) return written;
+    const fs::path folder = blobs_path(folder_);
+    if (auto written = is_lost() ? scene::replace_blob(folder, blob) : scene::write_blob(folder, blob);
+        !written)
+        return written;
     const std::scoped_lock lock(mutex_);
     kept_.insert(blob.hash());
+    lost_.erase(blob.hash());
     return {};
+}
+
+void StoredBlobs::sync_failed(const Hash256& blob) {
+    const std::scoped_lock lock(mutex_);
+    kept_.erase(blob);
+    lost_.insert(blob);
+}
+
+void StoredBlobs::sync_failed_of_all() {
+    const std::scoped_lock lock(mutex_);
+    lost_.merge(kept_);
+    kept_.clear();
+}
+
+void StoredBlobs::write_lost_again(const std::set<Hash256>& referenced, const scene::BlobStore& blobs) {
+    std::set<Hash256> lost;
+    {
+        const std::scoped_lock lock(mutex_);
+        std::ranges::set_intersection(lost_, referenced, std::inserter(lost, lost.end()));
+    }
+    for (const Hash256& hash : lost) {
+        const scene::BlobPtr blob = blobs.find(hash);
+        if (!blob) {
+            throw Error(ErrorCode::NotFound,
+                        "blob " + to_hex(hash) + " could not be synced, and is no longer in memory");
+        }
+        if (auto written = write(*blob); !written) throw written.error();
+    }
 }
 
 void StoredBlobs::scene_closed() {
@@ -87,6 +124,7 @@ std::size_t StoredBlobs::remove_unused() {
             checkpoints_, [&](const auto& checkpoint) { return checkpoint.second.contains(*hash); });
         if (is_journaled || is_referenced || !fs::remove(blobs_path(folder_) / name, error)) continue;
         kept_.erase(*hash);
+        lost_.erase(*hash);
         used_.erase(*hash);
         ++removed;
     }

@@ -21,6 +21,12 @@ class StoredBlobs {
     bool use(const Hash256& blob, std::uint64_t segment);
     // Writes a blob that use() was called for. Fails with Io.
     Expected<void> write(const scene::Blob& blob);
+    // The disk did not take them: they may be lost, even if they can still be read.
+    void sync_failed(const Hash256& blob);
+    void sync_failed_of_all();
+    // Writes those again whose sync failed, and syncs them, as a checkpoint must that refers to these blobs. Throws
+    // Error{Io}, or Error{NotFound} for a blob that is not in the store.
+    void write_lost_again(const std::set<Hash256>& referenced, const scene::BlobStore& blobs);
     void scene_closed();  // from now on each blob is looked for on disk again
 
     // The checkpoint of that number is on disk and refers to these blobs.
@@ -34,6 +40,7 @@ class StoredBlobs {
     std::mutex mutex_;                       // protects all below
     std::map<Hash256, std::uint64_t> used_;  // in which segment, at last
     std::set<Hash256> kept_;                 // written, or found intact
+    std::set<Hash256> lost_;                 // maybe: their sync failed
     std::map<std::uint64_t, std::set<Hash256>> checkpoints_;
 };
 

@@ -1,5 +1,6 @@
 #include "mediator/scene/blob_file.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -26,17 +27,27 @@ BlobPtr read_blob(const fs::path& folder, const BlobRef& blob) {
     return std::make_shared<const Blob>(std::move(data), blob.hash);
 }
 
-Expected<void> write_blob(const fs::path& folder, const Blob& blob) {
+namespace {
+
+bool sync(const fs::path& path) {
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) return false;
+    const bool is_synced = ::fsync(file) == 0;
+    const int reason = errno;
+    ::close(file);
+    errno = reason;
+    return is_synced;
+}
+
+Expected<void> write(const fs::path& folder, const Blob& blob, const std::string& suffix, bool syncs) {
     const fs::path path = blob_path(folder, reference(blob));
-    const fs::path unfinished = path.string() + "." + std::to_string(::getpid()) + ".part";
+    const fs::path unfinished = path.string() + suffix;
     std::error_code error;
-    // What a loss of power left of it is written again.
-    if (read_blob(folder, reference(blob))) return {};
     {
         std::ofstream file(unfinished, std::ios::binary);
         file.write(reinterpret_cast<const char*>(blob.bytes().data()),
                    static_cast<std::streamsize>(blob.bytes().size()));
-        if (!file.flush()) {
+        if (!file.flush() || (syncs && !sync(unfinished))) {
             const std::string reason = std::strerror(errno);
             file.close();
             fs::remove(unfinished, error);
@@ -45,8 +56,21 @@ Expected<void> write_blob(const fs::path& folder, const Blob& blob) {
         }
     }
     fs::rename(unfinished, path, error);
-    if (!error) return {};
-    return failure(ErrorCode::Io, "cannot write '" + path.string() + "': " + error.message());
+    if (!error && (!syncs || sync(folder))) return {};
+    return failure(ErrorCode::Io, "cannot write '" + path.string() +
+                                      "': " + (error ? error.message() : std::strerror(errno)));
+}
+
+}  // namespace
+
+Expected<void> write_blob(const fs::path& folder, const Blob& blob) {
+    // What a loss of power left of it is written again.
+    if (read_blob(folder, reference(blob))) return {};
+    return write(folder, blob, "." + std::to_string(::getpid()) + ".part", false);
+}
+
+Expected<void> replace_blob(const fs::path& folder, const Blob& blob) {
+    return write(folder, blob, "." + std::to_string(::getpid()) + ".again.part", true);
 }
 
 }  // namespace tessera::scene

@@ -16,4 +16,7 @@ BlobPtr read_blob(const std::filesystem::path& folder, const BlobRef& blob);
 // Written to a temporary file and renamed, so that it is never incomplete. Does nothing if the file exists.
 Expected<void> write_blob(const std::filesystem::path& folder, const Blob& blob);
 
+// Writes it even if the file exists, and syncs it to disk.
+Expected<void> replace_blob(const std::filesystem::path& folder, const Blob& blob);
+
 }  // namespace tessera::scene

@@ -101,6 +101,7 @@ TEST_F(FailedSync, EditsAreAcceptedAgainWhenACheckpointWasWritten) {
     ann->refresh();
     for (const ObjectId id : accepted) EXPECT_NE(ann->scene().find(id), nullptr);
     EXPECT_EQ(ann->scene().find(lost), nullptr);
+    EXPECT_NE(read_blob(folder / "blobs", reference(*blob)), nullptr) << "it was not written again";
 }
 
 }  // namespace

@@ -53,7 +53,8 @@ struct StoredBlobsTest : SessionFixture {
     }
     CheckpointResult checkpoint(Master& master) {
         CheckpointWriter writer(folder, master.stored);
-        writer.start({master.journal->start_segment(), {"the room", {}}, master.authority.save(), {}});
+        writer.start(
+            {master.journal->start_segment(), {"the room", {}}, master.authority.save(), {}, master.blobs});
         writer.wait();
         return writer.take_result().value();
     }
@@ -106,6 +107,31 @@ TEST_F(StoredBlobsTest, OfEditsSinceTheOlderCheckpointStay) {
     EXPECT_EQ(again->authority.scene().state_hash(), hash);
     for (const std::string& loss : again->recovery.losses)
         EXPECT_EQ(loss.find("blob"), std::string::npos) << loss;
+}
+
+// A file whose sync failed can often be read until the next start, and not after it.
+TEST_F(StoredBlobsTest, ThatTheDiskDidNotTakeAreWrittenAgainBeforeTheNextCheckpoint) {
+    auto master = run(1);
+    create(*master, 1);
+    ++id.value;
+    create(*master, 2);
+    for (const std::uint32_t number : {1u, 2u})
+        write(scene::blob_path(blobs_path(folder), scene::reference(blob(number))), "lost later..");
+    master->stored->sync_failed(blob(1).hash());
+    ASSERT_EQ(checkpoint(*master).problem, "");
+    EXPECT_TRUE(is_stored(1));
+    EXPECT_FALSE(is_stored(2)) << "nothing is written again without need";
+    master->stored->sync_failed_of_all();
+    ASSERT_EQ(checkpoint(*master).problem, "");
+    EXPECT_TRUE(is_stored(2));
+
+    master->stored->sync_failed(blob(1).hash());
+    const fs::path obstacle = scene::blob_path(blobs_path(folder), scene::reference(blob(1))).string() + "." +
+                              std::to_string(::getpid()) + ".again.part";
+    fs::create_directory(obstacle);
+    EXPECT_NE(checkpoint(*master).problem, "") << "it would refer to what is not on disk";
+    fs::remove(obstacle);
+    EXPECT_EQ(checkpoint(*master).problem, "");
 }
 
 // After a restart nothing is known of the checkpoints that are there.
