@@ -38,23 +38,39 @@ void LoopbackCluster::add_node(const std::string& backend, const NodeFaults& fau
     auto blobs = std::make_shared<scene::BlobStore>();
     auto made =
         backend::find_backend(backend).make({.threads = 1, .simulated_sample_cost = cost, .blobs = blobs});
-    start_node(backend, std::move(made), blobs, faults);
+    start_node(backend, std::move(made), blobs,
+               net::with_faults(hub_.client(net::Role::Node), faults.control, faults.bulk));
 }
 
 void LoopbackCluster::add_node(const MakeBackend& make) {
     auto blobs = std::make_shared<scene::BlobStore>();
-    start_node("test", make({.threads = 1, .blobs = blobs}), blobs, {});
+    start_node("test", make({.threads = 1, .blobs = blobs}), blobs, hub_.client(net::Role::Node));
+}
+
+void LoopbackCluster::add_node(LinkSwitch& link, Duration cost) {
+    auto blobs = std::make_shared<scene::BlobStore>();
+    auto made =
+        backend::find_backend("null").make({.threads = 1, .simulated_sample_cost = cost, .blobs = blobs});
+    start_node("null", std::move(made), blobs, link.channel([this] { return hub_.client(net::Role::Node); }),
+               [&link] { link.reconnect(); });
+}
+
+void LoopbackCluster::remove_newest_node() {
+    node_threads_.back().request_stop();
+    node_threads_.pop_back();
+    nodes_.pop_back();
 }
 
 void LoopbackCluster::start_node(const std::string& kind, std::unique_ptr<backend::Backend> made,
-                                 const std::shared_ptr<scene::BlobStore>& blobs, const NodeFaults& faults) {
+                                 const std::shared_ptr<scene::BlobStore>& blobs,
+                                 std::unique_ptr<net::Channel> channel, std::function<void()> reconnect) {
     node::NodeSettings settings{
-        .name = "node-" + std::to_string(nodes_.size() + 1), .backend = kind, .workers = 1};
+        .name = "node-" + std::to_string(++started_nodes_), .backend = kind, .workers = 1};
     settings.liveness = quick_heartbeats();
     settings.reproducible = kind != "embree";  // needs no pinning
     nodes_.push_back(std::make_unique<node::RenderNode>(
-        net::with_faults(hub_.client(net::Role::Node), faults.control, faults.bulk), std::move(made), blobs,
-        clock_, settings, node::NodeCallbacks{.event = [](const node::Report&) {}, .reconnect = {}}));
+        std::move(channel), std::move(made), blobs, clock_, settings,
+        node::NodeCallbacks{.event = [](const node::Report&) {}, .reconnect = std::move(reconnect)}));
     node::RenderNode& node = *nodes_.back();
     node_threads_.emplace_back([&node](std::stop_token stop) {
         // At once: a node whose channel is cut could wait for ever for its goodbye to be received.

@@ -14,6 +14,7 @@
 #include "mediator/net/fault_plan.h"
 #include "mediator/net/loopback.h"
 #include "node/render_node.h"
+#include "tests/cluster/link_switch.h"
 
 namespace tessera::test {
 
@@ -34,6 +35,9 @@ class LoopbackCluster {
     using MakeBackend =
         std::function<std::unique_ptr<backend::Backend>(const backend::BackendSettings& settings)>;
     void add_node(const MakeBackend& make);
+    // Of the null back-end; its link can be stalled and cut, and it reconnects. `link` must outlive it.
+    void add_node(LinkSwitch& link, Duration cost);
+    void remove_newest_node();  // it leaves at once
     std::unique_ptr<client::Session> session(std::shared_ptr<scene::BlobStore> blobs,
                                              net::Role role = net::Role::Editor,
                                              const std::string& user = "editor");
@@ -55,7 +59,8 @@ class LoopbackCluster {
 
   private:
     void start_node(const std::string& kind, std::unique_ptr<backend::Backend> made,
-                    const std::shared_ptr<scene::BlobStore>& blobs, const NodeFaults& faults);
+                    const std::shared_ptr<scene::BlobStore>& blobs, std::unique_ptr<net::Channel> channel,
+                    std::function<void()> reconnect = {});
 
     SteadyClock clock_;
     net::LoopbackHub hub_;
@@ -65,6 +70,7 @@ class LoopbackCluster {
     std::jthread master_thread_;
     std::vector<std::unique_ptr<node::RenderNode>> nodes_;
     std::vector<std::jthread> node_threads_;
+    std::size_t started_nodes_ = 0;
 };
 
 }  // namespace tessera::test

@@ -1,12 +1,17 @@
 #include "tests/fuzz/cluster_fuzz.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <deque>
+#include <fstream>
 #include <functional>
 #include <future>
 #include <map>
+#include <optional>
 #include <thread>
 
 #include "client/render.h"
@@ -14,6 +19,7 @@
 #include "mediator/scene/fields.h"
 #include "tests/cluster/cluster_scene.h"
 #include "tests/cluster/loopback_cluster.h"
+#include "tests/fuzz/faults.h"
 #include "tests/fuzz/random_peer.h"
 
 namespace tessera::test {
@@ -22,6 +28,7 @@ namespace {
 
 using namespace scene;
 using namespace std::chrono_literals;
+namespace fs = std::filesystem;
 
 constexpr net::Role Roles[] = {net::Role::Viewer, net::Role::Editor, net::Role::Node, net::Role::Operator};
 
@@ -35,22 +42,41 @@ session::ViewRequest honest_request() {
     return request;
 }
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool IsSanitized = true;  // needs several times the memory
+#else
+constexpr bool IsSanitized = false;
+#endif
+
+// Of this process, at most until now. Linux.
+std::uint64_t peak_memory() {
+    std::ifstream status("/proc/self/status");
+    for (std::string word; status >> word;) {
+        if (std::uint64_t kib = 0; word == "VmHWM:" && status >> kib) return kib << 10;
+    }
+    return 0;
+}
+
 class Fuzz {
   public:
-    explicit Fuzz(const FuzzSettings& settings)
-        : settings_(settings), random_(settings.seed, 1), cluster_([](master::MasterSettings& master) {
-              master.stuck = {.allowance = 1s, .predicted_times = 20, .first_film = 5s, .building = 5s};
-              master.memory_limit = std::uint64_t{1} << 30;
-              master.views.orphan_limit = 1s;
-          }) {}
+    explicit Fuzz(const FuzzSettings& settings) : settings_(settings), random_(settings.seed, 1) {
+        fs::remove_all(folder_);
+    }
+    ~Fuzz() {
+        cluster_.reset();
+        fs::remove_all(folder_);
+    }
 
     FuzzReport run() {
         expected_ = honest_hash();
-        for (int i = 0; i < 2; ++i) cluster_.add_node("null", {}, 5us);
-        while (report_.messages < settings_.messages && report_.violations.empty()) {
-            edit_among_peers();
+        start();
+        for (bool restarts = false; sent() < settings_.messages && report_.violations.empty();
+             restarts = !restarts) {
+            edit_among_peers(restarts);
             if (report_.violations.empty()) render_among_peers();
         }
+        cluster_.reset();
+        check_traffic();
         return report_;
     }
 
@@ -67,34 +93,57 @@ class Fuzz {
         return to_hex(frame::film_hash(*client::render(*session, honest_request(), {}, {}).film()));
     }
 
+    void start() {
+        cluster_.emplace([&](master::MasterSettings& master) {
+            master.stuck = {.allowance = 1s, .predicted_times = 20, .first_film = 5s, .building = 5s};
+            master.memory_limit = MemoryLimit;
+            master.views.orphan_limit = 1s;
+            master.session_folder = folder_;
+            master.checkpoint_interval = 200ms;
+        });
+        links_.clear();
+        for (int i = 0; i < 2; ++i) add_node();
+    }
+    void add_node() {
+        links_.emplace_back();
+        cluster_->add_node(links_.back(), 5us);
+    }
+    std::uint64_t sent() const { return traffic_.total(); }
+
     void add_peers(bool join, bool forge) {
         for (std::size_t i = 0; i < settings_.peers; ++i) {
             const net::Role role = Roles[i % std::size(Roles)];
             const std::string name = std::string(net::name(role)) + " " + std::to_string(i);
             peers_.push_back(std::make_unique<RandomPeer>(
-                cluster_.channel(role, name), RandomPeer::Settings{role, name, join, forge, honest_id_},
-                random_.below(~0ull)));
+                cluster_->channel(role, name), RandomPeer::Settings{role, name, join, forge, honest_id_},
+                traffic_, random_.below(~0ull)));
         }
     }
-    // As many messages as the peers get rid of; `done` ends it earlier.
-    void send(std::uint64_t messages, const std::function<bool()>& done) {
+    // As many messages as the peers get rid of, among faults; `done` ends it earlier.
+    void send(std::uint64_t messages, Faults& faults, const std::function<bool()>& done) {
         std::uint64_t idle = 0;
-        const auto total = [&] {
-            std::uint64_t sent = 0;
-            for (const auto& peer : peers_) sent += peer->sent();
-            return sent;
-        };
-        while (total() < messages && !done()) {
+        const std::uint64_t end = sent() + messages;
+        while (sent() < end && !done()) {
             RandomPeer& peer = *peers_[random_.below(peers_.size())];
             if (peer.act()) {
                 idle = 0;
+                faults.step(*std::prev(links_.end(), 2), links_.back());
             } else if (++idle > peers_.size()) {
                 std::this_thread::sleep_for(1ms);
                 idle = 0;
             }
+            if (random_.below(2000) == 0) {
+                faults.heal();
+                cluster_->remove_newest_node();
+                add_node();
+            }
         }
-        report_.messages += total();
-        for (const auto& peer : peers_) report_.reached += peer->reached();
+        faults.heal();
+        report_.faults += faults.count();
+        for (const auto& peer : peers_) {
+            report_.reached += peer->reached();
+            if (!peer->leak().empty()) violated("a viewer got " + peer->leak());
+        }
     }
     void remove_peers() {
         for (const auto& peer : peers_) {
@@ -104,9 +153,9 @@ class Fuzz {
     }
 
     // ---- the live scene ----
-    void edit_among_peers() {
+    void edit_among_peers(bool restarts) {
         const auto blobs = std::make_shared<BlobStore>();
-        auto ann = cluster_.member("ann", blobs);
+        auto ann = cluster_->member("ann", blobs);
         const ObjectId first = ann->new_id();
         for (int i = 0; i < 3; ++i) (void)ann->new_id();
         if (!ann->submit(scene_entries(first, *blobs)).accepted) return violated("the scene is refused");
@@ -116,13 +165,33 @@ class Fuzz {
         std::vector<Entry> creations;
         for (const ObjectId id : mine) creations.push_back(Create{id, Material{.name = "mine"}});
         if (!ann->submit(std::move(creations)).accepted) return violated("an honest edit is refused");
-        ann->lock(mine);
-
-        add_peers(true, true);
-        std::atomic<bool> stop = false;
         std::map<ObjectId, float> acknowledged;
-        auto editing = std::async(std::launch::async, [&] { edit(*ann, mine, acknowledged, stop); });
-        send(settings_.messages / 8 + 1, [] { return false; });
+        edit_among_peers(*ann, mine, acknowledged);
+        try {
+            if (restarts && report_.violations.empty()) {
+                ann.reset();
+                cluster_.reset();
+                start();
+                ann = cluster_->member("ann", blobs);
+                ann->refresh();
+                check_scene(*ann, acknowledged);
+                edit_among_peers(*ann, mine, acknowledged);
+            }
+            if (!report_.violations.empty()) return;
+            ann->close_scene();
+            check_units(*ann);
+        } catch (const std::exception& error) {
+            violated(std::string("the honest editor: ") + error.what());
+        }
+    }
+    void edit_among_peers(client::Session& ann, const std::vector<ObjectId>& mine,
+                          std::map<ObjectId, float>& acknowledged) {
+        Faults faults(folder_, random_.below(~0ull));
+        std::atomic<bool> stop = false;
+        ann.lock(mine);
+        add_peers(true, true);
+        auto editing = std::async(std::launch::async, [&] { edit(ann, mine, acknowledged, faults, stop); });
+        send(settings_.messages / 8 + 1, faults, [] { return false; });
         stop = true;
         if (editing.wait_for(60s) != std::future_status::ready) {
             violated("an honest edit got no answer for 60 s");
@@ -130,25 +199,25 @@ class Fuzz {
         }
         try {
             editing.get();
-            check_scene(*ann, acknowledged);
+            check_scene(ann, acknowledged);
             remove_peers();
-            check_nodes(*ann);
-            ann->close_scene();
-            check_units(*ann);
+            check_nodes(ann);
         } catch (const std::exception& error) {
             violated(std::string("the honest editor: ") + error.what());
         }
     }
     void edit(client::Session& ann, const std::vector<ObjectId>& mine,
-              std::map<ObjectId, float>& acknowledged, const std::atomic<bool>& stop) {
+              std::map<ObjectId, float>& acknowledged, const Faults& faults, const std::atomic<bool>& stop) {
         for (float step = 0.0f; !stop; step += 1.0f) {
             const ObjectId id = mine[static_cast<std::size_t>(step) % mine.size()];
             const float roughness = step / 1000.0f - std::floor(step / 1000.0f);
+            const std::uint64_t disk = faults.disk_changes();
             const auto result = ann.submit({Update{id, Fields<Material>(&Material::roughness).bits(),
                                                    Material{.roughness = roughness}}});
-            if (!result.accepted) throw Error(ErrorCode::Refused, result.problems.at(0));
-            acknowledged[id] = roughness;
-            ++report_.edits;
+            const bool disk_was_full = disk % 2 == 1 || faults.disk_changes() != disk;
+            if (!result.accepted && !disk_was_full) throw Error(ErrorCode::Refused, result.problems.at(0));
+            if (result.accepted) acknowledged[id] = roughness;
+            report_.edits += result.accepted ? 1 : 0;
         }
     }
     // No acknowledged edit is lost, and every replica is the authority's scene.
@@ -159,7 +228,7 @@ class Fuzz {
             if (material == nullptr || material->roughness != roughness)
                 violated("an acknowledged edit of object " + std::to_string(id.value) + " is lost");
         }
-        const auto late = cluster_.member("late", std::make_shared<BlobStore>());
+        const auto late = cluster_->member("late", std::make_shared<BlobStore>());
         for (int i = 0; i < 100 && late->scene().version() != ann.scene().version(); ++i) {
             ann.refresh();
             late->refresh();
@@ -179,9 +248,9 @@ class Fuzz {
     // Once the peers are gone, which takes until their timeouts.
     void check_nodes(client::Session& session) {
         const session::ClusterStatus status = status_when(session, [](const session::ClusterStatus& at) {
-            return at.sessions == 1 && std::ranges::all_of(at.nodes, [&](const auto& node) {
-                       return node.version == at.version;
-                   });
+            return at.sessions == 1 && at.nodes.size() == 2 &&
+                   std::ranges::all_of(at.nodes,
+                                       [&](const auto& node) { return node.version == at.version; });
         });
         if (status.sessions != 1)
             violated(std::to_string(status.sessions - 1) + " clients that are gone are still there");
@@ -189,6 +258,10 @@ class Fuzz {
         for (const session::NodeStatus& node : status.nodes) {
             if (node.version != status.version)
                 violated("node " + node.summary.name + " does not reach the published version");
+        }
+        for (const std::string& event : cluster_->events()) {
+            if (event.starts_with("node node-") && event.find("cannot build version") != std::string::npos)
+                violated("the master accepted what nodes refuse: " + event);
         }
         if (status.caught_exceptions != 0)
             violated("the master caught " + std::to_string(status.caught_exceptions) + " exceptions");
@@ -206,14 +279,31 @@ class Fuzz {
                      std::to_string(ended(units)) + " are accounted for");
     }
 
+    // Of everything that all peers have sent.
+    void check_traffic() {
+        report_.messages = sent();
+        report_.peak_memory = peak_memory();
+        // In addition to what the master may use: for nodes, honest clients, what peers prepare.
+        constexpr std::uint64_t Rest = std::uint64_t{256} << 20;
+        if (!IsSanitized && report_.peak_memory > MemoryLimit + Rest)
+            violated(std::to_string(report_.peak_memory >> 20) + " MiB of memory");
+        constexpr std::uint64_t Enough = 10'000;
+        if (sent() < Enough) return;
+        for (const std::string_view kind : RandomPeer::kinds(Roles)) {
+            if (traffic_.share(kind) < 0.01)
+                violated("less than 1 % of the messages are " + std::string(kind));
+        }
+    }
+
     // ---- a frame of an exclusive scene ----
     void render_among_peers() {
-        const auto session = cluster_.batch(std::make_shared<BlobStore>());
+        const auto session = cluster_->batch(std::make_shared<BlobStore>());
         add_peers(false, false);
         auto rendering = std::async(std::launch::async,
                                     [&] { return client::render(*session, honest_request(), {}, {}); });
+        Faults faults(folder_, random_.below(~0ull));
         const auto done = [&] { return rendering.wait_for(0s) == std::future_status::ready; };
-        send(settings_.messages / 8 + 1, done);
+        send(settings_.messages / 8 + 1, faults, done);
         if (rendering.wait_for(120s) != std::future_status::ready) {
             violated("an honest frame did not end within 120 s");
             std::quick_exit(1);
@@ -232,9 +322,15 @@ class Fuzz {
         }
     }
 
+    // Far above what honest peers need, far below what peers can make of a few messages.
+    static constexpr std::uint64_t MemoryLimit = std::uint64_t{256} << 20;
+
+    const fs::path folder_ = fs::temp_directory_path() / ("tessera-fuzz-" + std::to_string(::getpid()));
     FuzzSettings settings_;
     CounterRandom random_;
-    LoopbackCluster cluster_;
+    Traffic traffic_;
+    std::deque<LinkSwitch> links_;  // of the honest nodes; the last two are in use
+    std::optional<LoopbackCluster> cluster_;
     std::vector<std::unique_ptr<RandomPeer>> peers_;
     ObjectId honest_id_{};
     std::string expected_;

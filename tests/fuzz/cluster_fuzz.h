@@ -16,6 +16,8 @@ struct FuzzSettings {
 
 struct FuzzReport {
     std::uint64_t messages = 0, edits = 0, frames = 0;  // of the peers; of the honest
+    std::uint64_t faults = 0;                           // of links and the disk
+    std::uint64_t peak_memory = 0;                      // bytes, of this process
     Reached reached;
     double longest_step_cpu = 0.0;  // s
     std::string longest_part;

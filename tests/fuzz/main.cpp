@@ -19,11 +19,12 @@ int main(int count, char** words) {
     const auto number = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
     std::printf(
         "seed %llu: %llu messages: %llu edits and %llu requests accepted, %llu frames, %llu units; "
-        "%llu honest edits, %llu honest frames; a step of the loop took %.1f ms at most (%s)\n",
+        "%llu honest edits, %llu honest frames, %llu faults; %llu MiB of memory; a step of the loop took "
+        "%.1f ms at most (%s)\n",
         number(settings.seed), number(report.messages), number(report.reached.edits),
         number(report.reached.requests), number(report.reached.frames), number(report.reached.units),
-        number(report.edits), number(report.frames), 1e3 * report.longest_step_cpu,
-        report.longest_part.c_str());
+        number(report.edits), number(report.frames), number(report.faults), number(report.peak_memory >> 20),
+        1e3 * report.longest_step_cpu, report.longest_part.c_str());
     for (const std::string& violation : report.violations) std::printf("violated: %s\n", violation.c_str());
     return report.violations.empty() ? 0 : 1;
 }

@@ -1,9 +1,7 @@
 #include "tests/fuzz/random_peer.h"
 
 #include <algorithm>
-#include <limits>
 #include <map>
-#include <ranges>
 
 #include "mediator/view/view.h"
 #include "mediator/wire/envelope.h"
@@ -32,19 +30,53 @@ bool may_send(net::Role role, wire::Senders senders) {
     return false;
 }
 
-// What an honest client could not go on after: the orders of an operator to nodes, and the end of the scene.
-bool ends_the_test(const wire::ControlMessage& message) {
-    return std::holds_alternative<wire::CloseScene>(message) ||
-           std::holds_alternative<wire::ManageNode>(message);
+// What a role may send.
+struct Kinds {
+    std::vector<std::string_view> names;
+    std::vector<std::variant<wire::ControlMessage, wire::BulkMessage>> messages;
+    explicit Kinds(net::Role role) {
+        const auto add = [&](const auto& message, std::string_view name, wire::Senders senders) {
+            if (!may_send(role, senders)) return;
+            names.push_back(name);
+            messages.emplace_back(message);
+        };
+        wire::table::Control::for_each([&](const wire::ControlMessage& message, std::string_view name) {
+            add(message, name, wire::table::Control::senders(message));
+        });
+        wire::table::Bulk::for_each([&](const wire::BulkMessage& message, std::string_view name) {
+            add(message, name, wire::table::Bulk::senders(message));
+        });
+    }
+    static const Kinds& of(net::Role role) {
+        static const std::map<net::Role, Kinds> all = [] {
+            std::map<net::Role, Kinds> kinds;
+            for (const net::Role each :
+                 {net::Role::Viewer, net::Role::Editor, net::Role::Node, net::Role::Operator})
+                kinds.emplace(each, Kinds(each));
+            return kinds;
+        }();
+        return all.at(role);
+    }
+};
+
+template <class... Kind>
+bool is_any_of(const auto& value) {
+    return (std::holds_alternative<Kind>(value) || ...);
 }
 
-template <class Table, class Message>
-std::vector<Message> kinds_of(net::Role role) {
-    std::vector<Message> kinds;
-    Table::for_each([&](const Message& message, std::string_view) {
-        if (may_send(role, Table::senders(message))) kinds.push_back(message);
+// A viewer may see cameras and where they are; docs/security.md keeps all other objects from it.
+bool has_secrets(const scene::ChangeList& list) {
+    return std::ranges::any_of(list.entries, [](const scene::Entry& entry) {
+        return std::visit(
+            [](const auto& each) {
+                if constexpr (requires { each.object; }) {
+                    return !is_any_of<scene::Root, scene::Transform, scene::Camera>(each.object);
+                } else {
+                    return false;
+                }
+            },
+            entry);
     });
-    return kinds;
 }
 
 }  // namespace
@@ -57,34 +89,49 @@ Reached& Reached::operator+=(const Reached& other) {
     return *this;
 }
 
-RandomPeer::RandomPeer(std::unique_ptr<net::Channel> channel, const Settings& settings, std::uint64_t seed)
-    : channel_(std::move(channel)), settings_(settings), random_(seed, 0) {
+RandomPeer::RandomPeer(std::unique_ptr<net::Channel> channel, const Settings& settings, Traffic& traffic,
+                       std::uint64_t seed)
+    : channel_(std::move(channel)),
+      settings_(settings),
+      traffic_(traffic),
+      random_(seed),
+      scene_(random_, settings.spared),
+      node_(random_) {
     greet();
 }
 
+std::set<std::string_view> RandomPeer::kinds(std::span<const net::Role> roles) {
+    std::set<std::string_view> names;
+    for (const net::Role role : roles)
+        names.insert(Kinds::of(role).names.begin(), Kinds::of(role).names.end());
+    return names;
+}
+
 bool RandomPeer::send(const wire::ControlMessage& message) {
-    const bool sent =
-        channel_->send(net::Link::Control, net::ServerPeer, wire::encode(message)) == net::SendResult::Sent;
-    sent_ += sent ? 1 : 0;
-    return sent;
+    if (channel_->send(net::Link::Control, net::ServerPeer, wire::encode(message)) != net::SendResult::Sent)
+        return false;
+    traffic_.sent(wire::table::Control::name(message));
+    ++sent_;
+    return true;
 }
 
 bool RandomPeer::send(const wire::BulkMessage& message) {
-    const bool sent =
-        channel_->send(net::Link::Bulk, net::ServerPeer, wire::encode(message)) == net::SendResult::Sent;
-    sent_ += sent ? 1 : 0;
-    return sent;
+    if (channel_->send(net::Link::Bulk, net::ServerPeer, wire::encode(message)) != net::SendResult::Sent)
+        return false;
+    traffic_.sent(wire::table::Bulk::name(message));
+    ++sent_;
+    return true;
 }
 
 void RandomPeer::greet() {
     wire::Hello hello{
         .peer = settings_.role == net::Role::Node ? wire::PeerKind::Node : wire::PeerKind::Client,
-        .name = settings_.name};
+        .name = random_.name(settings_.name)};
     hello.backend = "null";
     hello.kind = "null-1/r1";
     hello.channels = frame::ChannelSet::all();
     hello.concurrent_units = 1 + static_cast<std::uint32_t>(random_.below(wire::MaxConcurrentUnits));
-    hello.resume_token = chance(50) ? token_ : 0;
+    hello.resume_token = random_.chance(50) ? token_ : 0;
     greeted_ = send(hello);
 }
 
@@ -94,9 +141,12 @@ void RandomPeer::say_goodbye() {
 }
 
 void RandomPeer::take(const wire::ControlMessage& message) {
+    if (settings_.role == net::Role::Viewer &&
+        is_any_of<wire::Changes, wire::ChangesByBlob, wire::History, wire::Writers, wire::Trace>(message))
+        leak_ = wire::table::Control::name(message);
     if (const auto* welcome = std::get_if<wire::Welcome>(&message)) {
         token_ = welcome->token;
-        version_.epoch = welcome->epoch;
+        scene_.renewed(welcome->epoch);
         welcome_ = true;
         (void)send(wire::BulkHello{token_});
     } else if (std::holds_alternative<wire::Unknown>(message)) {
@@ -105,33 +155,44 @@ void RandomPeer::take(const wire::ControlMessage& message) {
     } else if (const auto* joined = std::get_if<wire::SceneJoined>(&message)) {
         if (joined->queue_position != 0) return;
         joined_ = true;
-        version_ = joined->version;
-        first_id_ = joined->first_id;
-        id_count_ = joined->id_count;
-        sequence_ = joined->last_sequence;
-        created_.clear();  // known again as they are created
-        waiting_.clear();
+        scene_.joined(*joined);
     } else if (const auto* reply = std::get_if<wire::EditReply>(&message)) {
-        answered(*reply);
+        scene_.answered(*reply);
     } else if (const auto* done = std::get_if<wire::RequestDone>(&message)) {
-        reached_.requests += done->accepted ? 1 : 0;
+        requests_ += done->accepted ? 1 : 0;
     } else if (const auto* content = std::get_if<wire::SceneContent>(&message)) {
         if (!content->blob.empty()) blobs_.push_back(content->blob.hash);
+        if (settings_.role == net::Role::Viewer && has_secrets(content->list)) leak_ = "objects";
     } else if (const auto* changes = std::get_if<wire::ChangesByBlob>(&message)) {
         blobs_.push_back(changes->blob.hash);
-        version_ = changes->to;
+        scene_.learned(changes->to);
     } else if (const auto* list = std::get_if<wire::Changes>(&message)) {
-        version_ = list->list.to;
-        state_hash_ = list->list.state_hash;
+        scene_.learned(list->list.to, list->list.state_hash);
     } else if (const auto* work = std::get_if<wire::Work>(&message)) {
-        units_.push_back(work->unit);
-        ++reached_.units;
+        node_.got(work->unit);
     } else if (const auto* view = std::get_if<wire::OpenView>(&message)) {
-        views_.push_back(*view);
+        node_.got(*view);
     }
-    if (units_.size() > 256) units_.pop_front();
-    if (views_.size() > 16) views_.pop_front();
-    if (blobs_.size() > 16) blobs_.erase(blobs_.begin());
+    if (blobs_.size() > 16) blobs_.pop_front();
+}
+
+void RandomPeer::take(const wire::BulkMessage& message) {
+    if (std::holds_alternative<wire::FrameHeader>(message)) ++frames_;
+    const auto* chunk = std::get_if<wire::BlobChunk>(&message);
+    if (settings_.role == net::Role::Viewer && chunk != nullptr && chunk->data.size() == chunk->total) {
+        const auto list = wire::decode_change_list(chunk->data);
+        if (!list || has_secrets(*list)) leak_ = "a blob with more than cameras";
+    }
+    const auto* request = std::get_if<wire::BlobRequest>(&message);
+    if (request == nullptr || random_.chance(10)) return;
+    const auto offered = std::ranges::find(offered_, request->hash, &Offered::hash);
+    if (offered == offered_.end() || request->offset >= offered->bytes.size()) return;
+    const auto first = offered->bytes.begin() + static_cast<std::ptrdiff_t>(request->offset);
+    const std::size_t size = std::min<std::size_t>(wire::MaxChunk, offered->bytes.size() - request->offset);
+    (void)send(wire::BlobChunk{.hash = offered->hash,
+                               .total = offered->bytes.size(),
+                               .offset = request->offset,
+                               .data = {first, first + static_cast<std::ptrdiff_t>(size)}});
 }
 
 void RandomPeer::read() {
@@ -140,263 +201,173 @@ void RandomPeer::read() {
         const auto* message = std::get_if<net::Message>(&received);
         if (message == nullptr) return;
         if (message->link == net::Link::Bulk) {
-            const auto bulk = wire::decode_bulk(message->bytes);
-            reached_.frames += bulk && std::holds_alternative<wire::FrameHeader>(*bulk) ? 1 : 0;
-            continue;
+            if (const auto bulk = wire::decode_bulk(message->bytes)) take(*bulk);
+        } else if (const auto decoded = wire::decode_control(message->bytes)) {
+            take(*decoded);
         }
-        if (const auto decoded = wire::decode_control(message->bytes)) take(*decoded);
     }
 }
 
 bool RandomPeer::act() {
     read();
     if (!greeted_) greet();
-    if (settings_.joins && welcome_ && !joined_ && settings_.role != net::Role::Node && chance(30)) {
+    if (settings_.joins && welcome_ && !joined_ && settings_.role != net::Role::Node && random_.chance(30)) {
         return send(wire::JoinScene{.title = "of " + settings_.name,
-                                    .name = settings_.name,
+                                    .name = random_.name(settings_.name),
                                     .key = settings_.role == net::Role::Viewer ? 0 : 1 + random_.below(3)});
     }
-    return chance(20) ? send_bulk() : send_control();
+    if (random_.chance(50)) return send_rarest();
+    if (settings_.role == net::Role::Node) {
+        if (random_.chance(60))
+            return send(wire::BulkMessage(node_.film(scene_.version(), settings_.may_forge)));
+        return random_.chance(50) ? send_filled(wire::Heartbeat{}) : send_filled(wire::VersionReport{});
+    }
+    if (joined_ && may_send(settings_.role, wire::Senders::Editors) && random_.chance(70)) return send_edit();
+    return random_.chance(50) ? send_filled(wire::RequestView{}) : send_rarest();
 }
 
-std::uint64_t RandomPeer::extreme() {
-    constexpr std::uint64_t Edges[] = {0, 1, 2, 255, 65535, 65536, 0x7fffffff, 0xffffffff, ~0ull >> 1, ~0ull};
-    return chance(50) ? random_.below(64) : Edges[random_.below(std::size(Edges))];
+bool RandomPeer::send_rarest() {
+    const Kinds& kinds = Kinds::of(settings_.role);
+    const auto& chosen = kinds.messages[traffic_.rarest(kinds.names)];
+    if (const auto* control = std::get_if<wire::ControlMessage>(&chosen)) return send_filled(*control);
+    return send(filled(std::get<wire::BulkMessage>(chosen)));
 }
 
-ObjectId RandomPeer::some_object() {
-    if (chance(60) && id_count_ > 0)
-        return ObjectId{first_id_ + random_.below(std::min<std::uint64_t>(id_count_, 64))};
-    if (chance(50)) return ObjectId{settings_.spared.value + random_.below(64)};
-    return chance(30) ? scene::RootId : ObjectId{extreme()};
+// What an honest editor could not go on after.
+bool RandomPeer::spares(const wire::ControlMessage& message) const {
+    return settings_.joins && std::holds_alternative<wire::CloseScene>(message);
 }
 
-Version RandomPeer::some_version() {
-    Version version = version_;
-    if (chance(30)) version.number += random_.below(5);
-    if (chance(10)) version = {extreme(), extreme()};
-    return version;
+bool RandomPeer::send_filled(wire::ControlMessage message) {
+    if (std::holds_alternative<wire::SubmitEdit>(message)) return send_edit();
+    std::visit([&](auto& each) { adjust(each); }, message);
+    const std::vector<std::byte> bytes = wire::encode(message);
+    if (spares(message) || !wire::fits_control(bytes)) {  // no one would send it; it counts as if
+        traffic_.sent(wire::table::Control::name(message));
+        ++sent_;
+        return true;
+    }
+    if (is_any_of<wire::Goodbye>(message)) joined_ = welcome_ = greeted_ = false;
+    if (is_any_of<wire::Hello>(message)) joined_ = welcome_ = false;
+    return send(message);
+}
+
+bool RandomPeer::send_edit() {
+    if (random_.below(400) == 0) {
+        SceneMoves::Encoded encoded = scene_.long_edit();
+        return offer(std::move(encoded.head), std::move(encoded.bytes));
+    }
+    const scene::Edit edit = scene_.edit();
+    wire::ControlMessage message = wire::SubmitEdit{edit};
+    if (wire::may_fit_control(edit.entries.size())) {
+        if (wire::fits_control(wire::encode(message))) return send(message);
+    }
+    return offer({.session = {}, .sequence = edit.sequence, .base = edit.base, .blob = {}},
+                 wire::encode(edit));
+}
+
+bool RandomPeer::offer(wire::SubmitEditByBlob&& edit, std::vector<std::byte>&& bytes) {
+    edit.blob = {.hash = blake2b(bytes), .byte_size = bytes.size()};
+    offered_.push_back({edit.blob.hash, std::move(bytes)});
+    if (offered_.size() > 2) offered_.pop_front();
+    return send(wire::ControlMessage(std::move(edit)));
 }
 
 void RandomPeer::adjust_view(session::ViewRequest& wanted) {
-    session::ViewRequest request{.stop = {.spp = chance(80) ? 1 + random_.below(64) : extreme()}};
-    request.view.width = static_cast<std::uint32_t>(chance(95) ? 1 + random_.below(200) : extreme());
-    request.view.height = static_cast<std::uint32_t>(chance(95) ? 1 + random_.below(200) : extreme());
+    session::ViewRequest request{
+        .stop = {.spp = random_.chance(80) ? 1 + random_.below(64) : random_.extreme()}};
+    const auto side = [&] {
+        return static_cast<std::uint32_t>(random_.chance(95) ? 1 + random_.below(200) : random_.extreme());
+    };
+    request.view.width = side();
+    request.view.height = side();
     request.view.window = {0, 0, static_cast<std::int32_t>(request.view.width),
                            static_cast<std::int32_t>(request.view.height)};
-    if (chance(10)) request.view.window = wanted.view.window;
-    request.view.camera = chance(70) ? view::perspective(glm::dmat4(1.0), 0.8, 1.0) : wanted.view.camera;
-    request.view.channels = chance(70) ? frame::ChannelSet{frame::Channel::Radiance} : wanted.view.channels;
-    request.view.filter = chance(50) ? "" : chance(50) ? "gauss" : wanted.view.filter;
+    if (random_.chance(10)) request.view.window = wanted.view.window;
+    request.view.camera =
+        random_.chance(70) ? view::perspective(glm::dmat4(1.0), 0.8, 1.0) : wanted.view.camera;
+    request.view.channels =
+        random_.chance(70) ? frame::ChannelSet{frame::Channel::Radiance} : wanted.view.channels;
+    request.view.filter = random_.chance(50) ? "" : random_.chance(50) ? "gauss" : wanted.view.filter;
     request.picture = wanted.picture;
     request.frames = wanted.frames;
     request.film = wanted.film;
-    request.min_nodes = chance(90) ? 0 : wanted.min_nodes;
+    request.min_nodes = random_.chance(90) ? 0 : wanted.min_nodes;
     request.wait_limit = wanted.wait_limit;
-    if (chance(20)) request.stop = wanted.stop;
-    request.name = chance(70) ? "" : "view " + std::to_string(random_.below(8));
-    request.detached = chance(20) && !request.name.empty();
+    if (random_.chance(20)) request.stop = wanted.stop;
+    request.name = random_.chance(70) ? "" : random_.name(view_name());
+    request.detached = random_.chance(20) && !request.name.empty();
     wanted = std::move(request);
-}
-
-// Of its own objects; most of them are accepted.
-std::vector<scene::Entry> RandomPeer::plain_entries(std::uint64_t sequence) {
-    std::vector<scene::Entry> entries;
-    std::set<ObjectId> touched;
-    for (std::uint64_t i = 1 + random_.below(5); i > 0; --i) {
-        const auto name = "object " + std::to_string(random_.below(1000));
-        const bool creates = created_.empty() || chance(30);
-        const ObjectId id =
-            creates
-                ? ObjectId{first_id_ + next_object_++ % std::max<std::uint64_t>(1, id_count_)}
-                : *std::next(created_.begin(), static_cast<std::ptrdiff_t>(random_.below(created_.size())));
-        if (!touched.insert(id).second) continue;
-        if (creates) {
-            entries.emplace_back(scene::Create{id, scene::Transform{.name = name}});
-            waiting_[sequence].created.push_back(id);
-        } else if (chance(80)) {
-            scene::Transform moved{.name = name};
-            moved.matrix[3] = {double(random_.below(1000)), 0, 0, 1};
-            entries.emplace_back(scene::Update{
-                id,
-                scene::Fields<scene::Transform>(&scene::Transform::name, &scene::Transform::matrix).bits(),
-                moved});
-        } else {
-            entries.emplace_back(scene::Remove{id});
-            waiting_[sequence].removed.push_back(id);
-        }
-    }
-    return entries;
-}
-
-void RandomPeer::answered(const wire::EditReply& reply) {
-    const auto edit = waiting_.extract(reply.sequence);
-    if (reply.result.accepted) {
-        ++reached_.edits;
-        if (edit.empty()) return;
-        for (const ObjectId id : edit.mapped().removed) created_.erase(id);
-        created_.insert(edit.mapped().created.begin(), edit.mapped().created.end());
-        return;
-    }
-    // An edit that did not arrive leaves a gap.
-    constexpr std::string_view Expected = "expected ";
-    for (const std::string& problem : reply.result.problems) {
-        const std::size_t at = problem.find(Expected);
-        if (at != std::string::npos) sequence_ = std::stoull(problem.substr(at + Expected.size())) - 1;
-    }
-}
-
-void RandomPeer::adjust_edit(scene::Edit& edit) {
-    edit.sequence = chance(90) ? ++sequence_ : extreme();
-    edit.undo = chance(80) ? 0 : chance(50) ? scene::UndoLatest : extreme();
-    edit.edit_group = random_.below(3);
-    if (edit.undo != 0 && chance(80)) edit.entries.clear();
-    if (edit.undo == 0 && chance(70)) {
-        edit.entries = plain_entries(edit.sequence);
-        return;
-    }
-    for (scene::Entry& entry : edit.entries) {
-        std::visit([&](auto& each) { each.id = some_object(); }, entry);
-        // Transforms and roots make graphs of any shape.
-        if (auto* create = std::get_if<scene::Create>(&entry); create && chance(50)) {
-            scene::Transform transform{.name = "t"};
-            for (std::uint64_t i = random_.below(4); i > 0; --i) transform.children.push_back(some_object());
-            create->object = transform;
-        }
-    }
 }
 
 template <class Message>
 void RandomPeer::adjust(Message& message) {
-    wire::test::fill(message, random_);
-    if constexpr (requires { message.number; }) message.number = chance(90) ? random_.below(6) : extreme();
-    if constexpr (requires { message.version; }) message.version = some_version();
-    if constexpr (requires { message.known; }) message.known = some_version();
-    if constexpr (requires { message.object; }) message.object = some_object();
+    wire::test::fill(message, random_.stream());
+    if constexpr (requires { message.number; })
+        message.number = random_.chance(90) ? random_.below(6) : random_.extreme();
+    if constexpr (requires { message.version; }) message.version = scene_.some_version();
+    if constexpr (requires { message.known; }) message.known = scene_.some_version();
+    if constexpr (requires { message.object; }) message.object = scene_.some_object();
     if constexpr (requires { message.objects; }) {
-        for (ObjectId& object : message.objects) object = some_object();
+        for (ObjectId& object : message.objects) object = scene_.some_object();
     }
-    if constexpr (std::is_same_v<Message, wire::UnitReleased>) {
-        if (!units_.empty() && chance(80)) {
-            message.unit = units_.front().id;
-            if (chance(70)) units_.pop_front();
-        }
+    if constexpr (requires { message.selection; }) {
+        for (ObjectId& object : message.selection) object = scene_.some_object();
     }
+    if constexpr (requires { message.text; }) message.text = random_.name("text");
+    if constexpr (requires { message.reason.size(); }) message.reason = random_.name("reason");
+    if constexpr (std::is_same_v<Message, wire::UnitReleased>) message.unit = node_.some_unit();
     if constexpr (std::is_same_v<Message, wire::RequestView>) adjust_view(message.wanted);
-    if constexpr (std::is_same_v<Message, wire::SubmitEdit>) adjust_edit(message.edit);
     if constexpr (std::is_same_v<Message, wire::JoinScene>) {
-        message.no_wait =
-            message.no_wait || message.exclusive;  // no exclusive scene that others would wait for
+        // No exclusive scene that others would wait for.
+        message.no_wait = message.no_wait || message.exclusive;
         message.key = random_.below(3);
     }
     if constexpr (std::is_same_v<Message, wire::VersionReport>) {
-        if (chance(90)) message.state_hash = state_hash_;
+        if (random_.chance(90)) message.state_hash = scene_.state_hash();
     }
     if constexpr (std::is_same_v<Message, wire::Heartbeat>) {
-        if (chance(80)) message.phase = session::NodePhase::Idle;
-        message.in_flight.clear();
-        for (const view::WorkUnit& unit : units_) message.in_flight.push_back(unit.id);
-        message.free_slots = static_cast<std::uint32_t>(chance(50) ? random_.below(8) : extreme());
-        message.last_work_sequence = extreme();
+        if (random_.chance(80)) message.phase = session::NodePhase::Idle;
+        message.in_flight = node_.units();
+        message.free_slots =
+            static_cast<std::uint32_t>(random_.chance(80) ? random_.below(8) : random_.extreme());
+        message.last_work_sequence = random_.extreme();
     }
     if constexpr (std::is_same_v<Message, wire::Hello>) {
-        message.protocol = chance(90) ? wire::ProtocolVersion : message.protocol;
-        message.kind = chance(80) ? "null-1/r1" : message.kind;
-        message.name = settings_.name;
+        message.protocol = random_.chance(90) ? wire::ProtocolVersion : message.protocol;
+        message.kind = random_.chance(80) ? "null-1/r1" : message.kind;
+        message.name = random_.name(settings_.name);
         if (settings_.role == net::Role::Node) message.peer = wire::PeerKind::Node;
-        message.resume_token = chance(50) ? token_ : extreme();
-        joined_ = welcome_ = false;
+        message.resume_token = random_.chance(50) ? token_ : random_.extreme();
     }
-    if constexpr (std::is_same_v<Message, wire::SetViewFilter> || std::is_same_v<Message, wire::FetchJob> ||
-                  std::is_same_v<Message, wire::CancelJob>) {
-        const std::string name = "view " + std::to_string(random_.below(8));
-        if constexpr (requires { message.view; }) message.view = name;
-        if constexpr (requires { message.job.name; }) message.job.name = name;
+    if constexpr (std::is_same_v<Message, wire::ManageNode>) {
+        message.name =
+            "node " + std::to_string(random_.below(8));  // not an honest one: they end when drained
     }
+    if constexpr (requires { message.view.size(); }) message.view = view_name();
+    if constexpr (requires { message.job.name; }) message.job.name = view_name();
 }
 
-bool RandomPeer::send_control() {
-    static const auto Kinds = [] {
-        std::map<net::Role, std::vector<wire::ControlMessage>> kinds;
-        for (const net::Role role :
-             {net::Role::Viewer, net::Role::Editor, net::Role::Node, net::Role::Operator})
-            kinds[role] = kinds_of<wire::table::Control, wire::ControlMessage>(role);
-        return kinds;
-    }();
-    const auto& kinds = Kinds.at(settings_.role);
-    wire::ControlMessage message = kinds[random_.below(kinds.size())];
-    // Edits and views lead to the most, so that every fourth message is one.
-    if (joined_ && chance(25)) {
-        if (chance(50)) {
-            message = wire::RequestView{};
-        } else if (may_send(settings_.role, wire::Senders::Editors)) {
-            message = wire::SubmitEdit{};
-        }
+wire::BulkMessage RandomPeer::filled(wire::BulkMessage message) {
+    const auto some_blob = [&](Hash256& hash) {
+        wire::test::fill(hash, random_.stream());
+        if (!blobs_.empty() && random_.chance(80)) hash = blobs_[random_.below(blobs_.size())];
+    };
+    if (std::holds_alternative<wire::FilmPart>(message))
+        return node_.film(scene_.version(), settings_.may_forge);
+    if (auto* hello = std::get_if<wire::BulkHello>(&message)) {
+        hello->token = random_.chance(80) ? token_ : random_.extreme();
+    } else if (auto* request = std::get_if<wire::BlobRequest>(&message)) {
+        some_blob(request->hash);
+        request->offset = random_.extreme();
+    } else if (auto* absent = std::get_if<wire::BlobAbsent>(&message)) {
+        some_blob(absent->hash);
+    } else if (auto* chunk = std::get_if<wire::BlobChunk>(&message)) {
+        chunk->total = 1 + random_.below(1 << 20);
+        some_blob(chunk->hash);
+        chunk->data.resize(random_.below(chunk->total), std::byte{1});
     }
-    const bool ends = std::holds_alternative<wire::Goodbye>(message);
-    if (ends && !chance(10)) message = wire::Heartbeat{};
-    // A greeting ends the session; what comes after is for a new one.
-    const bool greets = std::holds_alternative<wire::Hello>(message);
-    if (ends_the_test(message) || (greets && !chance(5))) message = wire::Heartbeat{};
-    std::visit([&](auto& each) { adjust(each); }, message);
-    if (std::holds_alternative<wire::Goodbye>(message)) joined_ = welcome_ = greeted_ = false;
-    if (!wire::fits_control(wire::encode(message))) return true;  // would not be sent by anyone
-    return send(message);
-}
-
-wire::FilmPart RandomPeer::film() {
-    wire::FilmPart part;
-    if (units_.empty() || chance(20)) {
-        part.unit = UnitId{extreme()};
-        part.view = ViewId{extreme()};
-        part.film = frame::FilmTile({0, 0, 8, 8}, {0, 1}, {frame::Channel::Radiance});
-        return part;
-    }
-    const view::WorkUnit unit = units_.front();
-    if (chance(70)) units_.pop_front();
-    part.unit = unit.id;
-    part.view = unit.view;
-    part.revision = unit.revision;
-    part.version = version_;
-    part.units = static_cast<std::uint32_t>(chance(90) ? 1 : extreme());
-    part.rays = extreme();
-    part.busy_ns = extreme();
-    frame::ChannelSet channels{frame::Channel::Radiance};
-    for (const wire::OpenView& view : views_) {
-        if (view.view.id == unit.view) channels = view.view.channels;
-    }
-    part.film = frame::FilmTile(unit.tile, unit.block, channels);
-    const bool forges = settings_.may_forge && chance(50);
-    if (!forges) std::ranges::fill(part.film.planes, std::numeric_limits<float>::quiet_NaN());
-    return part;
-}
-
-bool RandomPeer::send_bulk() {
-    wire::BulkMessage message = wire::BlobAbsent{};
-    switch (random_.below(settings_.role == net::Role::Node ? 4 : 3)) {
-        case 0: {
-            wire::BlobRequest request;
-            wire::test::fill(request, random_);
-            if (!blobs_.empty() && chance(90)) request.hash = blobs_[random_.below(blobs_.size())];
-            request.offset = extreme();
-            message = request;
-            break;
-        }
-        case 1: {
-            wire::BlobChunk chunk{.total = 1 + random_.below(1 << 20), .offset = 0, .data = {}};
-            wire::test::fill(chunk.hash, random_);
-            if (!blobs_.empty() && chance(50)) chunk.hash = blobs_[random_.below(blobs_.size())];
-            chunk.data.resize(random_.below(chunk.total), std::byte{1});
-            message = chunk;
-            break;
-        }
-        case 2:
-            message = wire::BulkHello{chance(80) ? token_ : extreme()};
-            break;
-        default:
-            message = film();
-    }
-    return send(message);
+    return message;
 }
 
 }  // namespace tessera::test

@@ -1,15 +1,17 @@
 #pragma once
 
 #include <deque>
-#include <map>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "mediator/base/random.h"
 #include "mediator/net/channel.h"
-#include "mediator/wire/messages.h"
+#include "tests/fuzz/node_moves.h"
+#include "tests/fuzz/scene_moves.h"
+#include "tests/fuzz/traffic.h"
 
 namespace tessera::test {
 
@@ -22,66 +24,65 @@ struct Reached {
     Reached& operator+=(const Reached& other);
 };
 
-// A peer that sends valid messages of its role in any order, with any legal values: what it learns from the answers
-// (ids, versions, units) it puts into later messages, so that they reach further than random numbers would. One thread.
+// A peer that sends valid messages of its role in any order, with any legal values, many of them such that follow from
+// what it learned from the answers. Half of its messages are of the kind that all peers have sent least. One thread.
 class RandomPeer {
   public:
     struct Settings {
         net::Role role = net::Role::Viewer;
         std::string name;
-        bool joins = true;  // scenes; else it is a client outside
+        bool joins = true;  // the shared scene; else it is a client outside, and may try to close scenes
         bool may_forge =
-            true;  // film that is plausible and wrong: no one can tell without rendering it again
-        ObjectId
-            spared{};  // objects from this id on belong to others: it may touch them, too, but locks refuse it
+            true;           // film that is plausible and wrong: no one can tell without rendering it again
+        ObjectId spared{};  // from here on objects belong to others
     };
-    RandomPeer(std::unique_ptr<net::Channel> channel, const Settings& settings, std::uint64_t seed);
+    RandomPeer(std::unique_ptr<net::Channel> channel, const Settings& settings, Traffic& traffic,
+               std::uint64_t seed);
+
+    // Names of all messages that peers of these roles send.
+    static std::set<std::string_view> kinds(std::span<const net::Role> roles);
 
     // Reads what has come, then sends one message. False: the link is full or closed, nothing was sent.
     bool act();
     void read();
     void say_goodbye();
     std::uint64_t sent() const { return sent_; }
-    const Reached& reached() const { return reached_; }
+    Reached reached() const { return {scene_.accepted(), requests_, frames_, node_.dealt()}; }
+    // What it got and must not get; "" if nothing.
+    const std::string& leak() const { return leak_; }
 
   private:
     bool send(const wire::ControlMessage& message);
     bool send(const wire::BulkMessage& message);
     void greet();
     void take(const wire::ControlMessage& message);
-    bool send_control();
-    bool send_bulk();
+    void take(const wire::BulkMessage& message);
+    bool send_rarest();
+    bool send_filled(wire::ControlMessage message);
+    bool send_edit();
+    bool offer(wire::SubmitEditByBlob&& edit, std::vector<std::byte>&& bytes);
+    wire::BulkMessage filled(wire::BulkMessage message);
     template <class Message>
     void adjust(Message& message);
     void adjust_view(session::ViewRequest& wanted);
-    void adjust_edit(scene::Edit& edit);
-    std::vector<scene::Entry> plain_entries(std::uint64_t sequence);
-    void answered(const wire::EditReply& reply);
-    wire::FilmPart film();
-    ObjectId some_object();
-    Version some_version();
-    std::uint64_t extreme();  // a number that is often at an edge
-    bool chance(unsigned percent) { return random_.below(100) < percent; }
+    bool spares(const wire::ControlMessage& message) const;
+    std::string view_name() { return "view " + std::to_string(random_.below(8)); }
 
     std::unique_ptr<net::Channel> channel_;
     Settings settings_;
-    CounterRandom random_;
-    std::uint64_t sent_ = 0;
-    Reached reached_;
+    Traffic& traffic_;
+    RandomValues random_;
+    SceneMoves scene_;
+    NodeMoves node_;
+    std::uint64_t sent_ = 0, requests_ = 0, frames_ = 0, token_ = 0;
     bool greeted_ = false, welcome_ = false, joined_ = false;
-    std::uint64_t token_ = 0, sequence_ = 0, first_id_ = 0, id_count_ = 0;
-    Version version_;
-    Hash128 state_hash_;
-    struct WaitingEdit {
-        std::vector<ObjectId> created, removed;
+    std::deque<Hash256> blobs_;  // that the master named
+    struct Offered {
+        Hash256 hash;
+        std::vector<std::byte> bytes;
     };
-    std::map<std::uint64_t, WaitingEdit> waiting_;  // by sequence
-    std::set<ObjectId> created_;                    // by edits that were accepted
-    std::uint64_t next_object_ = 0;
-    std::vector<Hash256> blobs_;  // that the master named
-    // of a node
-    std::deque<view::WorkUnit> units_;
-    std::deque<wire::OpenView> views_;
+    std::deque<Offered> offered_;  // for the master to fetch
+    std::string leak_;
 };
 
 }  // namespace tessera::test

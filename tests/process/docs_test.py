@@ -73,6 +73,8 @@ def options_exist(source: pathlib.Path, programs: pathlib.Path) -> bool:
     for program in ("tessera", "tessera-master", "tessera-node", "tessera-display"):
         known |= options_of([str(programs / program)])
     known |= options_of([sys.executable, str(source / "tests" / "bench" / "wire" / "wire_bench.py")])
+    known |= options_of([str(programs.parent / "tests" / "tessera_fuzz")])
+    known |= options_of([sys.executable, str(source / "tests" / "fuzz" / "defects_test.py")])
     wrong = []
     has_bench = (programs / "tessera-bench").exists()
     for page in [source / "README.md", *sorted((source / "docs").glob("*.md"))]:
