@@ -308,8 +308,12 @@ void SceneSession::tick(TimePoint now) {
 
 TimePoint SceneSession::next_event(TimePoint now) const {
     TimePoint next = std::min(views_.next_event(now), display_.next_event());
-    if (open_ && !is_editing() && authority_.has_unpublished())
-        next = std::min(next, std::max(now, published_at_ + VersionInterval));
+    if (open_ && !is_editing() && authority_.has_unpublished()) {
+        const TimePoint interval_ends = published_at_ + VersionInterval;
+        const bool waits_for_frame = unpublished_since_ && interval_ends <= now;  // which is an event, too
+        next = std::min(
+            next, std::max(now, waits_for_frame ? *unpublished_since_ + FirstFrameWait : interval_ends));
+    }
     return next;
 }
 

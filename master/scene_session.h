@@ -52,6 +52,9 @@ struct MemoryUse {
 class SceneSession {
   public:
     static constexpr Duration VersionInterval = std::chrono::milliseconds(16);
+    // So long edits wait for views to show the version there is, or a drag would restart them before they show anything. No
+    // longer: a view that never gets a frame must not keep the edits of others.
+    static constexpr Duration FirstFrameWait = std::chrono::seconds(3);
 
     SceneSession(std::uint64_t epoch, const ViewSettings& settings, const MasterServices& services);
 
@@ -215,6 +218,7 @@ class SceneSession {
         owner_missing_since_;  // a recovered exclusive scene: since when it waits for its owner
     std::map<SessionId, Member> members_;
     TimePoint published_at_{};
+    std::optional<TimePoint> unpublished_since_;  // an edit waits to be published
     // What the end of the running edit is awaited for.
     std::optional<SessionId> requester_;  // whose later messages wait for it
     std::vector<SessionId> to_forget_;

@@ -129,7 +129,14 @@ void SceneSession::publish_if_due(TimePoint now) {
     if (is_editing()) return;
     const bool waits = authority_.has_unpublished();
     views_.pause_passes(waits);
-    if (!waits || now - published_at_ < VersionInterval || !views_.may_publish()) return;
+    if (!waits) {
+        unpublished_since_.reset();
+        return;
+    }
+    if (!unpublished_since_) unpublished_since_ = now;
+    if (now - published_at_ < VersionInterval) return;
+    if (now - *unpublished_since_ < FirstFrameWait && !views_.may_publish()) return;
+    unpublished_since_.reset();
     publish_edits([](TimePoint) {}, now);
 }
 

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "tests/cluster/cluster_scene.h"
+#include "tests/cluster/hooked_backend.h"
 #include "tests/cluster/loopback_cluster.h"
 #include "tests/cluster/raw_peer.h"
 
@@ -123,6 +124,23 @@ TEST_F(OthersViews, AClientThatDoesNotReadItsPictureDoesNotKeepOthersWaiting) {
     EXPECT_TRUE(has_joined);
     EXPECT_TRUE(has_event("eve (eve-key) does not read its picture"));
     EXPECT_TRUE(eve.received<wire::Refusal>());
+}
+
+// A view holds edits back until it has shown a frame, so that a drag does not restart it for ever.
+TEST_F(OthersViews, AViewThatNeverGetsAFrameDoesNotHoldTheEditsOfOthers) {
+    const auto is_released = std::make_shared<std::atomic<bool>>(false);  // outlives the test in the node
+    cluster.add_node(hooked([is_released](const view::WorkUnit&, backend::RenderResult&) {
+        while (!*is_released) std::this_thread::sleep_for(1ms);
+    }));
+    const auto ann = cluster.member("ann", blobs, net::Role::Editor, "ann-key");
+    const auto bob = cluster.member("bob", blobs, net::Role::Editor, "bob-key");
+    bob->request_view(1, view_named("main", 4));
+    while (bob->status().units.issued == 0) std::this_thread::sleep_for(1ms);
+    const ObjectId id = ann->new_id();
+    EXPECT_TRUE(ann->submit({scene::Create{id, scene::Material{}}}).accepted);
+    EXPECT_NO_THROW(ann->refresh());
+    EXPECT_NE(ann->scene().find(id), nullptr);
+    *is_released = true;
 }
 
 }  // namespace
