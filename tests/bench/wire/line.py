@@ -155,20 +155,22 @@ class Line:
                 far = self._keep(socket.socket())
             except OSError:  # closed
                 return
+            connection = Connection(near, far)
+            with self._lock:  # before anyone can see that it is connected, and cut or forget it
+                self._connections.append(connection)
+                if not self._held:
+                    connection.passes.set()
             try:
                 far.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, SOCKET_BUFFER)
                 far.connect(target)
             except OSError:  # the master is not there: the node tries again
                 near.close()
+                with self._lock, contextlib.suppress(ValueError):
+                    self._connections.remove(connection)
                 continue
             for end in (near, far):
                 end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
                 end.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BUFFER)
-            connection = Connection(near, far)
-            with self._lock:
-                self._connections.append(connection)
-                if not self._held:
-                    connection.passes.set()
             self._forward(near, far, connection.passes, self.to_master)
             self._forward(far, near, connection.passes, self.to_nodes)
 
