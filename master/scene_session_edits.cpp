@@ -95,6 +95,7 @@ void SceneSession::publish(scene::ChangeList&& published, TimePoint now) {
     const scene::ChangeList& changes = *shared;
     PublishedScene before = std::exchange(published_, authority_.published());
     published_at_ = now;
+    unpublished_since_.reset();
     ++counts_.versions;
     published_transactions_ = authority_.transactions();
     // Outdated work is cancelled before the change is sent to the nodes, so that they build sooner.
@@ -136,7 +137,6 @@ void SceneSession::publish_if_due(TimePoint now) {
     if (!unpublished_since_) unpublished_since_ = now;
     if (now - published_at_ < VersionInterval) return;
     if (now - *unpublished_since_ < FirstFrameWait && !views_.may_publish()) return;
-    unpublished_since_.reset();
     publish_edits([](TimePoint) {}, now);
 }
 

@@ -77,7 +77,7 @@ CheckpointResult CheckpointWriter::write(CheckpointJob job) const {
         std::set<Hash256> blobs;
         for (const scene::BlobRef& blob : referenced_blobs(job.authority)) blobs.insert(blob.hash);
         check_lease();
-        if (stored_ && job.blobs) stored_->write_lost_again(blobs, *job.blobs);
+        if (stored_) stored_->write_lost_again(blobs);
         result.byte_size = write_checkpoint(checkpoint_path(folder_, job.number), job.number, state);
         check_lease();
         remove_outdated(folder_);

@@ -21,7 +21,6 @@ struct CheckpointJob {
     wire::RecordedTitle scene;
     AuthorityState authority;  // SceneAuthority::save()
     std::vector<wire::SavedView> views;
-    std::shared_ptr<const scene::BlobStore> blobs = nullptr;  // for those that the disk did not take
 };
 
 struct CheckpointResult {

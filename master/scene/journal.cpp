@@ -15,7 +15,7 @@ Journal::Journal(const std::filesystem::path& folder, std::shared_ptr<const scen
       blobs_(std::move(blobs)),
       number_(segment),
       segment_(journal_path(folder, segment), segment),
-      stored_(stored ? std::move(stored) : std::make_shared<StoredBlobs>(folder)),
+      stored_(stored ? std::move(stored) : std::make_shared<StoredBlobs>(folder, blobs_)),
       lease_(std::move(lease)),
       sync_(sync_interval) {
     sync_.soon(segment_.file());
@@ -67,6 +67,8 @@ Expected<void> Journal::keep_blobs(const std::vector<scene::Entry>& entries) {
                 ::open(scene::blob_path(folder, reference).c_str(), O_RDONLY | O_CLOEXEC));
             if (file->descriptor() >= 0) {
                 sync_.soon(file, [stored = stored_, hash = reference.hash] { stored->sync_failed(hash); });
+            } else {
+                stored_->sync_failed(reference.hash);
             }
             wrote = true;
         }

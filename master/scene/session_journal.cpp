@@ -12,12 +12,11 @@ SessionJournal::SessionJournal(const std::filesystem::path& folder, Duration int
       authority_(authority),
       events_(std::move(events)),
       recovery_(recover(folder_, authority, *blobs)),
-      blobs_(std::move(blobs)),
-      stored_(std::make_shared<StoredBlobs>(folder)),
+      stored_(std::make_shared<StoredBlobs>(folder, blobs)),
       writer_(folder, stored_, folder_.lease()) {
     for (const std::string& note : recovery_.notes) events_({wire::Severity::Info, note});
     for (const std::string& loss : recovery_.losses) events_({wire::Severity::Warning, loss});
-    journal_.emplace(folder, blobs_, recovery_.next_segment, stored_, folder_.lease());
+    journal_.emplace(folder, std::move(blobs), recovery_.next_segment, stored_, folder_.lease());
 }
 
 void SessionJournal::opened(const wire::RecordedTitle& scene) {
@@ -72,11 +71,8 @@ void SessionJournal::write_checkpoint(const wire::RecordedTitle& scene, std::vec
     failures_at_start_ = journal_->failures();
     try {
         const std::uint64_t number = journal_->start_segment();
-        writer_.start({.number = number,
-                       .scene = scene,
-                       .authority = authority_.save(),
-                       .views = std::move(views),
-                       .blobs = blobs_});
+        writer_.start(
+            {.number = number, .scene = scene, .authority = authority_.save(), .views = std::move(views)});
     } catch (const Error& error) {
         events_({wire::Severity::Error, std::string("no checkpoint: ") + error.what()});
     }

@@ -48,7 +48,6 @@ class SessionJournal {
     SceneAuthority& authority_;
     EventSink events_;
     Recovery recovery_;
-    std::shared_ptr<const scene::BlobStore> blobs_;
     std::shared_ptr<StoredBlobs> stored_;
     std::optional<Journal> journal_;
     CheckpointWriter writer_;

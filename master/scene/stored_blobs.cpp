@@ -32,7 +32,8 @@ std::optional<Hash256> hash_in(const std::string& name) {
 
 }  // namespace
 
-StoredBlobs::StoredBlobs(fs::path session_folder) : folder_(std::move(session_folder)) {}
+StoredBlobs::StoredBlobs(fs::path session_folder, std::shared_ptr<const scene::BlobStore> blobs)
+    : folder_(std::move(session_folder)), blobs_(std::move(blobs)) {}
 
 bool StoredBlobs::use(const Hash256& blob, std::uint64_t segment) {
     const std::scoped_lock lock(mutex_);
@@ -68,14 +69,14 @@ void StoredBlobs::sync_failed_of_all() {
     kept_.clear();
 }
 
-void StoredBlobs::write_lost_again(const std::set<Hash256>& referenced, const scene::BlobStore& blobs) {
+void StoredBlobs::write_lost_again(const std::set<Hash256>& referenced) {
     std::set<Hash256> lost;
     {
         const std::scoped_lock lock(mutex_);
         std::ranges::set_intersection(lost_, referenced, std::inserter(lost, lost.end()));
     }
     for (const Hash256& hash : lost) {
-        const scene::BlobPtr blob = blobs.find(hash);
+        const scene::BlobPtr blob = blobs_->find(hash);
         if (!blob) {
             throw Error(ErrorCode::NotFound,
                         "blob " + to_hex(hash) + " could not be synced, and is no longer in memory");

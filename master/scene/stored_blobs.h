@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <set>
 
@@ -14,7 +15,8 @@ namespace tessera::master {
 // those that neither the last two checkpoints nor the journal since the older of them refer to. Thread-safe.
 class StoredBlobs {
   public:
-    explicit StoredBlobs(std::filesystem::path session_folder);
+    // `blobs`: those in memory.
+    StoredBlobs(std::filesystem::path session_folder, std::shared_ptr<const scene::BlobStore> blobs);
 
     // An edit that will be recorded in that segment refers to the blob. True: this process has written it, so it is on
     // disk and stays until a checkpoint after that segment.
@@ -24,9 +26,9 @@ class StoredBlobs {
     // The disk did not take them: they may be lost, even if they can still be read.
     void sync_failed(const Hash256& blob);
     void sync_failed_of_all();
-    // Writes those again whose sync failed, and syncs them, as a checkpoint must that refers to these blobs. Throws
-    // Error{Io}, or Error{NotFound} for a blob that is not in the store.
-    void write_lost_again(const std::set<Hash256>& referenced, const scene::BlobStore& blobs);
+    // Of the blobs that a checkpoint is going to refer to, writes those again whose sync failed, and syncs them. Throws
+    // Error{Io}, or Error{NotFound} for one that is no longer in memory.
+    void write_lost_again(const std::set<Hash256>& referenced);
     void scene_closed();  // from now on each blob is looked for on disk again
 
     // The checkpoint of that number is on disk and refers to these blobs.
@@ -37,6 +39,7 @@ class StoredBlobs {
 
   private:
     const std::filesystem::path folder_;
+    const std::shared_ptr<const scene::BlobStore> blobs_;
     std::mutex mutex_;                       // protects all below
     std::map<Hash256, std::uint64_t> used_;  // in which segment, at last
     std::set<Hash256> kept_;                 // written, or found intact

@@ -48,8 +48,6 @@ struct LoopSteps : testing::Test {
         cluster = std::make_unique<LoopbackCluster>([&](master::MasterSettings& settings) {
             if (records) settings.session_folder = folder;
             settings.checkpoint_interval = checkpoint_interval;
-            // Twenty peers of one thread read many megabytes between two heartbeats of theirs.
-            settings.liveness.missed = 100;
         });
         cluster->add_node("null");
         ann = cluster->member("ann", blobs);

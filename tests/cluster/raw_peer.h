@@ -19,7 +19,8 @@ class RawPeer {
 
     void send(const wire::ControlMessage& message) { send(net::Link::Control, wire::encode(message)); }
     void send(const wire::BulkMessage& message) { send(net::Link::Bulk, wire::encode(message)); }
-    // Stores the messages of the next few milliseconds; sends a heartbeat.
+    // Stores the messages of the next few milliseconds, a few at most, so that other peers of this thread send theirs in
+    // time; sends a heartbeat.
     void poll();
 
     // The n-th message of that kind, if received.

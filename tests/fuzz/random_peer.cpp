@@ -30,32 +30,27 @@ bool may_send(net::Role role, wire::Senders senders) {
     return false;
 }
 
-// What a role may send.
+// What a role may send; members of the scene of an honest editor do not close it.
 struct Kinds {
     std::vector<std::string_view> names;
     std::vector<std::variant<wire::ControlMessage, wire::BulkMessage>> messages;
-    explicit Kinds(net::Role role) {
+    Kinds(net::Role role, bool is_member) {
         const auto add = [&](const auto& message, std::string_view name, wire::Senders senders) {
             if (!may_send(role, senders)) return;
             names.push_back(name);
             messages.emplace_back(message);
         };
         wire::table::Control::for_each([&](const wire::ControlMessage& message, std::string_view name) {
+            if (is_member && std::holds_alternative<wire::CloseScene>(message)) return;
             add(message, name, wire::table::Control::senders(message));
         });
         wire::table::Bulk::for_each([&](const wire::BulkMessage& message, std::string_view name) {
             add(message, name, wire::table::Bulk::senders(message));
         });
     }
-    static const Kinds& of(net::Role role) {
-        static const std::map<net::Role, Kinds> all = [] {
-            std::map<net::Role, Kinds> kinds;
-            for (const net::Role each :
-                 {net::Role::Viewer, net::Role::Editor, net::Role::Node, net::Role::Operator})
-                kinds.emplace(each, Kinds(each));
-            return kinds;
-        }();
-        return all.at(role);
+    static const Kinds& of(net::Role role, bool is_member) {
+        static std::map<std::pair<net::Role, bool>, Kinds> known;
+        return known.try_emplace({role, is_member}, role, is_member).first->second;
     }
 };
 
@@ -95,15 +90,17 @@ RandomPeer::RandomPeer(std::unique_ptr<net::Channel> channel, const Settings& se
       settings_(settings),
       traffic_(traffic),
       random_(seed),
-      scene_(random_, settings.spared),
-      node_(random_) {
+      edits_(random_, settings.spared),
+      film_(random_) {
     greet();
 }
 
 std::set<std::string_view> RandomPeer::kinds(std::span<const net::Role> roles) {
     std::set<std::string_view> names;
-    for (const net::Role role : roles)
-        names.insert(Kinds::of(role).names.begin(), Kinds::of(role).names.end());
+    for (const net::Role role : roles) {
+        const Kinds& kinds = Kinds::of(role, false);
+        names.insert(kinds.names.begin(), kinds.names.end());
+    }
     return names;
 }
 
@@ -146,7 +143,7 @@ void RandomPeer::take(const wire::ControlMessage& message) {
         leak_ = wire::table::Control::name(message);
     if (const auto* welcome = std::get_if<wire::Welcome>(&message)) {
         token_ = welcome->token;
-        scene_.renewed(welcome->epoch);
+        edits_.renewed(welcome->epoch);
         welcome_ = true;
         (void)send(wire::BulkHello{token_});
     } else if (std::holds_alternative<wire::Unknown>(message)) {
@@ -155,9 +152,9 @@ void RandomPeer::take(const wire::ControlMessage& message) {
     } else if (const auto* joined = std::get_if<wire::SceneJoined>(&message)) {
         if (joined->queue_position != 0) return;
         joined_ = true;
-        scene_.joined(*joined);
+        edits_.joined(*joined);
     } else if (const auto* reply = std::get_if<wire::EditReply>(&message)) {
-        scene_.answered(*reply);
+        edits_.answered(*reply);
     } else if (const auto* done = std::get_if<wire::RequestDone>(&message)) {
         requests_ += done->accepted ? 1 : 0;
     } else if (const auto* content = std::get_if<wire::SceneContent>(&message)) {
@@ -165,13 +162,13 @@ void RandomPeer::take(const wire::ControlMessage& message) {
         if (settings_.role == net::Role::Viewer && has_secrets(content->list)) leak_ = "objects";
     } else if (const auto* changes = std::get_if<wire::ChangesByBlob>(&message)) {
         blobs_.push_back(changes->blob.hash);
-        scene_.learned(changes->to);
+        edits_.learned(changes->to);
     } else if (const auto* list = std::get_if<wire::Changes>(&message)) {
-        scene_.learned(list->list.to, list->list.state_hash);
+        edits_.learned(list->list.to, list->list.state_hash);
     } else if (const auto* work = std::get_if<wire::Work>(&message)) {
-        node_.got(work->unit);
+        film_.got(work->unit);
     } else if (const auto* view = std::get_if<wire::OpenView>(&message)) {
-        node_.got(*view);
+        film_.got(*view);
     }
     if (blobs_.size() > 16) blobs_.pop_front();
 }
@@ -219,7 +216,7 @@ bool RandomPeer::act() {
     if (random_.chance(50)) return send_rarest();
     if (settings_.role == net::Role::Node) {
         if (random_.chance(60))
-            return send(wire::BulkMessage(node_.film(scene_.version(), settings_.may_forge)));
+            return send(wire::BulkMessage(film_.film(edits_.version(), settings_.may_forge)));
         return random_.chance(50) ? send_filled(wire::Heartbeat{}) : send_filled(wire::VersionReport{});
     }
     if (joined_ && may_send(settings_.role, wire::Senders::Editors) && random_.chance(70)) return send_edit();
@@ -227,26 +224,17 @@ bool RandomPeer::act() {
 }
 
 bool RandomPeer::send_rarest() {
-    const Kinds& kinds = Kinds::of(settings_.role);
+    const Kinds& kinds = Kinds::of(settings_.role, settings_.joins);
     const auto& chosen = kinds.messages[traffic_.rarest(kinds.names)];
     if (const auto* control = std::get_if<wire::ControlMessage>(&chosen)) return send_filled(*control);
     return send(filled(std::get<wire::BulkMessage>(chosen)));
-}
-
-// What an honest editor could not go on after.
-bool RandomPeer::spares(const wire::ControlMessage& message) const {
-    return settings_.joins && std::holds_alternative<wire::CloseScene>(message);
 }
 
 bool RandomPeer::send_filled(wire::ControlMessage message) {
     if (std::holds_alternative<wire::SubmitEdit>(message)) return send_edit();
     std::visit([&](auto& each) { adjust(each); }, message);
     const std::vector<std::byte> bytes = wire::encode(message);
-    if (spares(message) || !wire::fits_control(bytes)) {  // no one would send it; it counts as if
-        traffic_.sent(wire::table::Control::name(message));
-        ++sent_;
-        return true;
-    }
+    if (!wire::fits_control(bytes)) return true;  // no client would send it
     if (is_any_of<wire::Goodbye>(message)) joined_ = welcome_ = greeted_ = false;
     if (is_any_of<wire::Hello>(message)) joined_ = welcome_ = false;
     return send(message);
@@ -254,10 +242,10 @@ bool RandomPeer::send_filled(wire::ControlMessage message) {
 
 bool RandomPeer::send_edit() {
     if (random_.below(400) == 0) {
-        SceneMoves::Encoded encoded = scene_.long_edit();
+        EditGenerator::Encoded encoded = edits_.long_edit();
         return offer(std::move(encoded.head), std::move(encoded.bytes));
     }
-    const scene::Edit edit = scene_.edit();
+    const scene::Edit edit = edits_.edit();
     wire::ControlMessage message = wire::SubmitEdit{edit};
     if (wire::may_fit_control(edit.entries.size())) {
         if (wire::fits_control(wire::encode(message))) return send(message);
@@ -305,18 +293,18 @@ void RandomPeer::adjust(Message& message) {
     wire::test::fill(message, random_.stream());
     if constexpr (requires { message.number; })
         message.number = random_.chance(90) ? random_.below(6) : random_.extreme();
-    if constexpr (requires { message.version; }) message.version = scene_.some_version();
-    if constexpr (requires { message.known; }) message.known = scene_.some_version();
-    if constexpr (requires { message.object; }) message.object = scene_.some_object();
+    if constexpr (requires { message.version; }) message.version = edits_.some_version();
+    if constexpr (requires { message.known; }) message.known = edits_.some_version();
+    if constexpr (requires { message.object; }) message.object = edits_.some_object();
     if constexpr (requires { message.objects; }) {
-        for (ObjectId& object : message.objects) object = scene_.some_object();
+        for (ObjectId& object : message.objects) object = edits_.some_object();
     }
     if constexpr (requires { message.selection; }) {
-        for (ObjectId& object : message.selection) object = scene_.some_object();
+        for (ObjectId& object : message.selection) object = edits_.some_object();
     }
     if constexpr (requires { message.text; }) message.text = random_.name("text");
     if constexpr (requires { message.reason.size(); }) message.reason = random_.name("reason");
-    if constexpr (std::is_same_v<Message, wire::UnitReleased>) message.unit = node_.some_unit();
+    if constexpr (std::is_same_v<Message, wire::UnitReleased>) message.unit = film_.some_unit();
     if constexpr (std::is_same_v<Message, wire::RequestView>) adjust_view(message.wanted);
     if constexpr (std::is_same_v<Message, wire::JoinScene>) {
         // No exclusive scene that others would wait for.
@@ -324,11 +312,11 @@ void RandomPeer::adjust(Message& message) {
         message.key = random_.below(3);
     }
     if constexpr (std::is_same_v<Message, wire::VersionReport>) {
-        if (random_.chance(90)) message.state_hash = scene_.state_hash();
+        if (random_.chance(90)) message.state_hash = edits_.state_hash();
     }
     if constexpr (std::is_same_v<Message, wire::Heartbeat>) {
         if (random_.chance(80)) message.phase = session::NodePhase::Idle;
-        message.in_flight = node_.units();
+        message.in_flight = film_.units();
         message.free_slots =
             static_cast<std::uint32_t>(random_.chance(80) ? random_.below(8) : random_.extreme());
         message.last_work_sequence = random_.extreme();
@@ -354,7 +342,7 @@ wire::BulkMessage RandomPeer::filled(wire::BulkMessage message) {
         if (!blobs_.empty() && random_.chance(80)) hash = blobs_[random_.below(blobs_.size())];
     };
     if (std::holds_alternative<wire::FilmPart>(message))
-        return node_.film(scene_.version(), settings_.may_forge);
+        return film_.film(edits_.version(), settings_.may_forge);
     if (auto* hello = std::get_if<wire::BulkHello>(&message)) {
         hello->token = random_.chance(80) ? token_ : random_.extreme();
     } else if (auto* request = std::get_if<wire::BlobRequest>(&message)) {

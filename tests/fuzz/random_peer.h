@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "mediator/net/channel.h"
-#include "tests/fuzz/node_moves.h"
-#include "tests/fuzz/scene_moves.h"
+#include "tests/fuzz/edit_generator.h"
+#include "tests/fuzz/film_generator.h"
 #include "tests/fuzz/traffic.h"
 
 namespace tessera::test {
@@ -31,7 +31,7 @@ class RandomPeer {
     struct Settings {
         net::Role role = net::Role::Viewer;
         std::string name;
-        bool joins = true;  // the shared scene; else it is a client outside, and may try to close scenes
+        bool joins = true;  // the shared scene; else it stays outside, and tries to close that of others
         bool may_forge =
             true;           // film that is plausible and wrong: no one can tell without rendering it again
         ObjectId spared{};  // from here on objects belong to others
@@ -47,7 +47,7 @@ class RandomPeer {
     void read();
     void say_goodbye();
     std::uint64_t sent() const { return sent_; }
-    Reached reached() const { return {scene_.accepted(), requests_, frames_, node_.dealt()}; }
+    Reached reached() const { return {edits_.accepted(), requests_, frames_, film_.dealt()}; }
     // What it got and must not get; "" if nothing.
     const std::string& leak() const { return leak_; }
 
@@ -65,15 +65,14 @@ class RandomPeer {
     template <class Message>
     void adjust(Message& message);
     void adjust_view(session::ViewRequest& wanted);
-    bool spares(const wire::ControlMessage& message) const;
     std::string view_name() { return "view " + std::to_string(random_.below(8)); }
 
     std::unique_ptr<net::Channel> channel_;
     Settings settings_;
     Traffic& traffic_;
     RandomValues random_;
-    SceneMoves scene_;
-    NodeMoves node_;
+    EditGenerator edits_;
+    FilmGenerator film_;
     std::uint64_t sent_ = 0, requests_ = 0, frames_ = 0, token_ = 0;
     bool greeted_ = false, welcome_ = false, joined_ = false;
     std::deque<Hash256> blobs_;  // that the master named

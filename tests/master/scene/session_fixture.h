@@ -36,7 +36,7 @@ struct SessionFixture : testing::Test {
         auto master = std::make_unique<Master>(epoch);
         master->files = std::make_unique<SessionFolder>(folder);
         master->recovery = recover(*master->files, master->authority, *master->blobs);
-        master->stored = std::make_shared<StoredBlobs>(folder);
+        master->stored = std::make_shared<StoredBlobs>(folder, master->blobs);
         master->journal = std::make_unique<Journal>(folder, master->blobs, master->recovery.next_segment,
                                                     master->stored, master->files->lease());
         master->authority.record_to(master->journal.get());

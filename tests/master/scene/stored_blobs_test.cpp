@@ -53,8 +53,7 @@ struct StoredBlobsTest : SessionFixture {
     }
     CheckpointResult checkpoint(Master& master) {
         CheckpointWriter writer(folder, master.stored);
-        writer.start(
-            {master.journal->start_segment(), {"the room", {}}, master.authority.save(), {}, master.blobs});
+        writer.start({master.journal->start_segment(), {"the room", {}}, master.authority.save(), {}});
         writer.wait();
         return writer.take_result().value();
     }

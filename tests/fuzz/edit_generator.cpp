@@ -1,4 +1,4 @@
-#include "tests/fuzz/scene_moves.h"
+#include "tests/fuzz/edit_generator.h"
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@
 
 namespace tessera::test {
 
-void SceneMoves::joined(const wire::SceneJoined& scene) {
+void EditGenerator::joined(const wire::SceneJoined& scene) {
     version_ = scene.version;
     first_id_ = scene.first_id;
     id_count_ = scene.id_count;
@@ -17,7 +17,7 @@ void SceneMoves::joined(const wire::SceneJoined& scene) {
     waiting_.clear();
 }
 
-void SceneMoves::answered(const wire::EditReply& reply) {
+void EditGenerator::answered(const wire::EditReply& reply) {
     const auto edit = waiting_.extract(reply.sequence);
     if (reply.result.accepted) {
         ++accepted_;
@@ -34,25 +34,25 @@ void SceneMoves::answered(const wire::EditReply& reply) {
     }
 }
 
-ObjectId SceneMoves::some_object() {
+ObjectId EditGenerator::some_object() {
     if (random_.chance(60) && id_count_ > 0)
         return ObjectId{first_id_ + random_.below(std::min<std::uint64_t>(id_count_, 64))};
     if (random_.chance(50)) return ObjectId{spared_.value + random_.below(64)};
     return random_.chance(30) ? scene::RootId : ObjectId{random_.extreme()};
 }
 
-Version SceneMoves::some_version() {
+Version EditGenerator::some_version() {
     Version version = version_;
     if (random_.chance(30)) version.number += random_.below(5);
     if (random_.chance(10)) version = {random_.extreme(), random_.extreme()};
     return version;
 }
 
-ObjectId SceneMoves::new_id() {
+ObjectId EditGenerator::new_id() {
     return ObjectId{first_id_ + next_object_++ % std::max<std::uint64_t>(1, id_count_)};
 }
 
-scene::Edit SceneMoves::edit() {
+scene::Edit EditGenerator::edit() {
     scene::Edit edit{.sequence = random_.chance(90) ? ++sequence_ : random_.extreme()};
     edit.base = some_version();
     edit.edit_group = random_.below(3);
@@ -73,7 +73,7 @@ scene::Edit SceneMoves::edit() {
 }
 
 // Of any objects and with any values; few are accepted.
-std::vector<scene::Entry> SceneMoves::random_entries() {
+std::vector<scene::Entry> EditGenerator::random_entries() {
     std::vector<scene::Entry> entries;
     wire::test::fill(entries, random_.stream());
     for (scene::Entry& entry : entries) {
@@ -89,7 +89,7 @@ std::vector<scene::Entry> SceneMoves::random_entries() {
 }
 
 // Of its own objects; most of them are accepted.
-std::vector<scene::Entry> SceneMoves::plain_entries(std::uint64_t sequence) {
+std::vector<scene::Entry> EditGenerator::plain_entries(std::uint64_t sequence) {
     std::vector<scene::Entry> entries;
     std::set<ObjectId> touched;
     for (std::uint64_t i = 1 + random_.below(5); i > 0; --i) {
@@ -118,7 +118,7 @@ std::vector<scene::Entry> SceneMoves::plain_entries(std::uint64_t sequence) {
 }
 
 // A graph that is deeper than back-ends can follow, or that has too many instances, in few objects; or a legal one.
-std::vector<scene::Entry> SceneMoves::deep_entries() {
+std::vector<scene::Entry> EditGenerator::deep_entries() {
     const bool doubles = random_.chance(50);
     const std::uint64_t levels = random_.chance(30) ? 2 + random_.below(8)
                                  : doubles          ? 25 + random_.below(30)
@@ -140,14 +140,14 @@ std::vector<scene::Entry> SceneMoves::deep_entries() {
     return entries;
 }
 
-std::vector<scene::Entry> SceneMoves::many_entries(std::size_t count) {
+std::vector<scene::Entry> EditGenerator::many_entries(std::size_t count) {
     std::vector<scene::Entry> entries;
     for (std::size_t i = 0; i < count; ++i) entries.emplace_back(scene::Create{new_id(), scene::Transform{}});
     return entries;
 }
 
 // A few bytes on the wire for each entry, and much memory.
-SceneMoves::Encoded SceneMoves::long_edit() {
+EditGenerator::Encoded EditGenerator::long_edit() {
     constexpr std::size_t Part = 1000;
     scene::Edit edit{.sequence = ++sequence_, .base = some_version(), .entries = {}};
     for (std::size_t i = 0; i < Part; ++i) edit.entries.emplace_back(scene::Remove{new_id()});

@@ -9,9 +9,9 @@
 namespace tessera::test {
 
 // What a node knows of views and of its units, and film of them.
-class NodeMoves {
+class FilmGenerator {
   public:
-    explicit NodeMoves(RandomValues& random) : random_(random) {}
+    explicit FilmGenerator(RandomValues& random) : random_(random) {}
 
     void got(const view::WorkUnit& unit);
     void got(const wire::OpenView& view);

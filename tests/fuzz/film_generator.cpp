@@ -1,24 +1,24 @@
-#include "tests/fuzz/node_moves.h"
+#include "tests/fuzz/film_generator.h"
 
 #include <algorithm>
 #include <limits>
 
 namespace tessera::test {
 
-void NodeMoves::got(const view::WorkUnit& unit) {
+void FilmGenerator::got(const view::WorkUnit& unit) {
     units_.push_back(unit);
     highest_ = std::max(highest_, unit.id.value);
     ++dealt_;
     if (units_.size() > 256) units_.pop_front();
 }
 
-void NodeMoves::got(const wire::OpenView& view) {
+void FilmGenerator::got(const wire::OpenView& view) {
     if (view.view.window.empty()) return;
     views_.push_back(view);
     if (views_.size() > 16) views_.pop_front();
 }
 
-UnitId NodeMoves::some_unit() {
+UnitId FilmGenerator::some_unit() {
     if (!units_.empty() && random_.chance(50)) {
         const UnitId id = units_.front().id;
         if (random_.chance(70)) units_.pop_front();
@@ -27,14 +27,14 @@ UnitId NodeMoves::some_unit() {
     return UnitId{random_.chance(80) ? random_.below(highest_ + 64) : random_.extreme()};
 }
 
-std::vector<UnitId> NodeMoves::units() const {
+std::vector<UnitId> FilmGenerator::units() const {
     std::vector<UnitId> ids;
     for (const view::WorkUnit& unit : units_) ids.push_back(unit.id);
     return ids;
 }
 
 // Plausible in all but that it was not dealt to this node: of a tile and block of a view that is open.
-wire::FilmPart NodeMoves::film_of_others() {
+wire::FilmPart FilmGenerator::film_of_others() {
     const view::View& view = views_[random_.below(views_.size())].view;
     wire::FilmPart part{
         .unit = UnitId{random_.below(highest_ + 64)}, .view = view.id, .revision = view.revision};
@@ -52,7 +52,7 @@ wire::FilmPart NodeMoves::film_of_others() {
     return part;
 }
 
-wire::FilmPart NodeMoves::film(Version version, bool may_forge) {
+wire::FilmPart FilmGenerator::film(Version version, bool may_forge) {
     wire::FilmPart part;
     if (units_.empty() || random_.chance(20)) {
         if (!views_.empty() && random_.chance(80)) {

@@ -12,10 +12,10 @@ namespace tessera::test {
 
 // What an editor knows of the scene, and edits that follow from it: its answers name versions and ids, which later edits
 // use, so that they reach further than random numbers would.
-class SceneMoves {
+class EditGenerator {
   public:
     // Objects from `spared` on belong to others: they are edited, too, but locks refuse it.
-    SceneMoves(RandomValues& random, ObjectId spared) : random_(random), spared_(spared) {}
+    EditGenerator(RandomValues& random, ObjectId spared) : random_(random), spared_(spared) {}
 
     void joined(const wire::SceneJoined& scene);
     void answered(const wire::EditReply& reply);
