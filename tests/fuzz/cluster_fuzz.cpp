@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <cstdio>
 #include <deque>
 #include <fstream>
@@ -113,6 +112,7 @@ class Fuzz {
             master.checkpoint_interval = 200ms;
         });
         links_.clear();
+        highest_unit_ = 0;
         for (int i = 0; i < 2; ++i) add_node();
     }
     void add_node() {
@@ -127,7 +127,7 @@ class Fuzz {
             const std::string name = std::string(net::name(role)) + " " + std::to_string(i);
             peers_.push_back(std::make_unique<RandomPeer>(
                 cluster_->channel(role, name), RandomPeer::Settings{role, name, join, forge, honest_id_},
-                traffic_, random_.below(~0ull)));
+                traffic_, highest_unit_, random_.below(~0ull)));
         }
     }
     // As many messages as the peers get rid of, among faults; `done` ends it earlier.
@@ -138,7 +138,8 @@ class Fuzz {
             RandomPeer& peer = *peers_[random_.below(peers_.size())];
             if (peer.act()) {
                 idle = 0;
-                faults.step(*std::prev(links_.end(), 2), links_.back());
+                faults.step(links_.front(), links_.back());
+                std::this_thread::sleep_for(400us);  // versions are published and superseded meanwhile
             } else if (++idle > peers_.size()) {
                 std::this_thread::sleep_for(1ms);
                 idle = 0;
@@ -206,11 +207,15 @@ class Fuzz {
         remove_peers();
         check_nodes(ann);
     }
+    // Of locked objects; at times also a long edit, which nodes get as a blob.
     void edit(client::Session& ann, const std::vector<ObjectId>& mine,
               std::map<ObjectId, float>& acknowledged, const Faults& faults, const std::atomic<bool>& stop) {
-        for (float step = 0.0f; !stop; step += 1.0f) {
-            const ObjectId id = mine[static_cast<std::size_t>(step) % mine.size()];
-            const float roughness = step / 1000.0f - std::floor(step / 1000.0f);
+        constexpr std::size_t LongEdit = 3;
+        std::vector<ObjectId> others;
+        for (std::size_t step = 1; !stop; ++step) {
+            if (step % LongEdit == 0) edit_many(ann, others);
+            const ObjectId id = mine[step % mine.size()];
+            const float roughness = static_cast<float>(step % 1000) / 1000.0f;
             const std::uint64_t disk = faults.disk_changes();
             const auto result = ann.submit({Update{id, Fields<Material>(&Material::roughness).bits(),
                                                    Material{.roughness = roughness}}});
@@ -219,6 +224,19 @@ class Fuzz {
             if (result.accepted) acknowledged[id] = roughness;
             report_.edits += result.accepted ? 1 : 0;
         }
+    }
+    // Creates objects, or removes those of the last time. Peers may undo it, since they are not locked.
+    static void edit_many(client::Session& ann, std::vector<ObjectId>& objects) {
+        constexpr std::size_t Count = 600;
+        std::vector<Entry> entries;
+        if (objects.empty()) {
+            for (std::size_t i = 0; i < Count; ++i) objects.push_back(ann.new_id());
+            for (const ObjectId id : objects) entries.emplace_back(Create{id, Transform{}});
+        } else {
+            for (const ObjectId id : std::exchange(objects, {})) entries.emplace_back(Remove{id});
+        }
+        if (!ann.submit(std::move(entries)).accepted) objects.clear();
+        ann.refresh();  // waits until it is published
     }
     // No acknowledged edit is lost, and every replica is the authority's scene.
     void check_scene(client::Session& ann, const std::map<ObjectId, float>& acknowledged) {
@@ -289,8 +307,8 @@ class Fuzz {
     void check_traffic() {
         report_.messages = sent();
         report_.peak_memory = peak_memory();
-        // In addition to what the master may use: for nodes, honest clients, what peers prepare.
-        constexpr std::uint64_t Rest = std::uint64_t{256} << 20;
+        // In addition to what the master may use: for nodes, honest clients, long edits that peers prepare.
+        constexpr std::uint64_t Rest = std::uint64_t{384} << 20;
         if (!IsSanitized && report_.peak_memory > MemoryLimit + Rest)
             violated(std::to_string(report_.peak_memory >> 20) + " MiB of memory");
         constexpr std::uint64_t Enough = 10'000;
@@ -323,13 +341,14 @@ class Fuzz {
     }
 
     // Far above what honest peers need, far below what peers can make of a few messages.
-    static constexpr std::uint64_t MemoryLimit = std::uint64_t{256} << 20;
+    static constexpr std::uint64_t MemoryLimit = std::uint64_t{128} << 20;
 
     const fs::path folder_ = fs::temp_directory_path() / ("tessera-fuzz-" + std::to_string(::getpid()));
     FuzzSettings settings_;
     CounterRandom random_;
     Traffic traffic_;
-    std::deque<LinkSwitch> links_;  // of the honest nodes; the last two are in use
+    std::uint64_t highest_unit_ = 0;  // that a peer knows of
+    std::deque<LinkSwitch> links_;    // of the honest nodes; the first and the last are in use
     std::optional<LoopbackCluster> cluster_;
     std::vector<std::unique_ptr<RandomPeer>> peers_;
     ObjectId honest_id_{};

@@ -58,7 +58,7 @@ def main():
     parser.add_argument("--build", type=pathlib.Path, metavar="FOLDER")
     parser.add_argument("--seeds", type=int, default=8, help="to try at most (default: %(default)s)")
     parser.add_argument("names", nargs="*", help="of defects (default: all)")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     root = options.root.resolve()
     patches = [patch for patch in sorted((HERE / "defects").glob("*.patch")) if not options.names or patch.stem in options.names]
     missed = []

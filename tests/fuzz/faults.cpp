@@ -12,6 +12,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr std::uint64_t LongFault = 1'000'000;  // until heal()
+
 void limit_files(rlim_t bytes) {
     rlimit limit{};
     ::getrlimit(RLIMIT_FSIZE, &limit);
@@ -25,7 +27,7 @@ void Faults::step(LinkSwitch& one, LinkSwitch& other) {
     if (left_ > 0 && --left_ == 0) heal();
     if (left_ > 0 || random_.below(400) != 0) return;
     ++count_;
-    left_ = 50 + random_.below(500);
+    left_ = random_.chance(30) ? LongFault : 50 + random_.below(500);
     LinkSwitch& link = random_.chance(50) ? one : other;
     switch (random_.below(5)) {
         case 0:

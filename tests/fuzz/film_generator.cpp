@@ -1,30 +1,48 @@
 #include "tests/fuzz/film_generator.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 namespace tessera::test {
 
-void FilmGenerator::got(const view::WorkUnit& unit) {
+void FilmGenerator::add(const view::WorkUnit& unit) {
     units_.push_back(unit);
-    highest_ = std::max(highest_, unit.id.value);
-    ++dealt_;
+    dealt_.insert(unit.id);
+    highest_unit_ = std::max(highest_unit_, unit.id.value);
     if (units_.size() > 256) units_.pop_front();
 }
 
-void FilmGenerator::got(const wire::OpenView& view) {
+void FilmGenerator::add(const wire::OpenView& view) {
     if (view.view.window.empty()) return;
     views_.push_back(view);
     if (views_.size() > 16) views_.pop_front();
 }
 
-UnitId FilmGenerator::some_unit() {
-    if (!units_.empty() && random_.chance(50)) {
-        const UnitId id = units_.front().id;
+// Half of the time the same again: one failure alone is not yet believed.
+UnitId FilmGenerator::unit_of_others() {
+    if (random_.chance(50) && latest_of_others_.value != 0 && !dealt_.contains(latest_of_others_))
+        return latest_of_others_;
+    constexpr std::uint64_t Near = 48;
+    do {
+        const std::uint64_t lowest = highest_unit_ > Near ? highest_unit_ - Near : 0;
+        latest_of_others_ = UnitId{random_.chance(90) ? lowest + random_.below(2 * Near) : random_.extreme()};
+    } while (dealt_.contains(latest_of_others_));
+    return latest_of_others_;
+}
+
+wire::UnitReleased FilmGenerator::release(bool may_fail) {
+    using enum wire::ReleaseReason;
+    constexpr wire::ReleaseReason Others[] = {Cancelled, OtherVersion, UnknownView, Leaving};
+    wire::UnitReleased release{.unit = {}, .reason = Failed, .message = random_.name("it failed")};
+    if (random_.chance(50)) release.reason = Others[random_.below(std::size(Others))];
+    if (!units_.empty() && random_.chance(40) && (may_fail || release.reason != Failed)) {
+        release.unit = units_.front().id;
         if (random_.chance(70)) units_.pop_front();
-        return id;
+    } else {
+        release.unit = unit_of_others();
     }
-    return UnitId{random_.chance(80) ? random_.below(highest_ + 64) : random_.extreme()};
+    return release;
 }
 
 std::vector<UnitId> FilmGenerator::units() const {
@@ -36,8 +54,10 @@ std::vector<UnitId> FilmGenerator::units() const {
 // Plausible in all but that it was not dealt to this node: of a tile and block of a view that is open.
 wire::FilmPart FilmGenerator::film_of_others() {
     const view::View& view = views_[random_.below(views_.size())].view;
-    wire::FilmPart part{
-        .unit = UnitId{random_.below(highest_ + 64)}, .view = view.id, .revision = view.revision};
+    wire::FilmPart part;
+    part.unit = unit_of_others();
+    part.view = view.id;
+    part.revision = view.revision;
     const std::int32_t side = random_.chance(50) ? 32 : 16;
     const auto start = [&](std::int32_t low, std::int32_t size) {
         const auto tiles = static_cast<std::uint64_t>((size + side - 1) / side);

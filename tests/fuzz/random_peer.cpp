@@ -85,13 +85,13 @@ Reached& Reached::operator+=(const Reached& other) {
 }
 
 RandomPeer::RandomPeer(std::unique_ptr<net::Channel> channel, const Settings& settings, Traffic& traffic,
-                       std::uint64_t seed)
+                       std::uint64_t& highest_unit, std::uint64_t seed)
     : channel_(std::move(channel)),
       settings_(settings),
       traffic_(traffic),
       random_(seed),
       edits_(random_, settings.spared),
-      film_(random_) {
+      film_(random_, highest_unit) {
     greet();
 }
 
@@ -166,9 +166,9 @@ void RandomPeer::take(const wire::ControlMessage& message) {
     } else if (const auto* list = std::get_if<wire::Changes>(&message)) {
         edits_.learned(list->list.to, list->list.state_hash);
     } else if (const auto* work = std::get_if<wire::Work>(&message)) {
-        film_.got(work->unit);
+        film_.add(work->unit);
     } else if (const auto* view = std::get_if<wire::OpenView>(&message)) {
-        film_.got(*view);
+        film_.add(*view);
     }
     if (blobs_.size() > 16) blobs_.pop_front();
 }
@@ -215,6 +215,7 @@ bool RandomPeer::act() {
     }
     if (random_.chance(50)) return send_rarest();
     if (settings_.role == net::Role::Node) {
+        if (random_.chance(20)) return send_filled(wire::UnitReleased{});
         if (random_.chance(60))
             return send(wire::BulkMessage(film_.film(edits_.version(), settings_.may_forge)));
         return random_.chance(50) ? send_filled(wire::Heartbeat{}) : send_filled(wire::VersionReport{});
@@ -241,7 +242,7 @@ bool RandomPeer::send_filled(wire::ControlMessage message) {
 }
 
 bool RandomPeer::send_edit() {
-    if (random_.below(400) == 0) {
+    if (random_.below(1500) == 0) {
         EditGenerator::Encoded encoded = edits_.long_edit();
         return offer(std::move(encoded.head), std::move(encoded.bytes));
     }
@@ -257,7 +258,7 @@ bool RandomPeer::send_edit() {
 bool RandomPeer::offer(wire::SubmitEditByBlob&& edit, std::vector<std::byte>&& bytes) {
     edit.blob = {.hash = blake2b(bytes), .byte_size = bytes.size()};
     offered_.push_back({edit.blob.hash, std::move(bytes)});
-    if (offered_.size() > 2) offered_.pop_front();
+    if (offered_.size() > 1) offered_.pop_front();
     return send(wire::ControlMessage(std::move(edit)));
 }
 
@@ -304,7 +305,7 @@ void RandomPeer::adjust(Message& message) {
     }
     if constexpr (requires { message.text; }) message.text = random_.name("text");
     if constexpr (requires { message.reason.size(); }) message.reason = random_.name("reason");
-    if constexpr (std::is_same_v<Message, wire::UnitReleased>) message.unit = film_.some_unit();
+    if constexpr (std::is_same_v<Message, wire::UnitReleased>) message = film_.release(settings_.may_forge);
     if constexpr (std::is_same_v<Message, wire::RequestView>) adjust_view(message.wanted);
     if constexpr (std::is_same_v<Message, wire::JoinScene>) {
         // No exclusive scene that others would wait for.

@@ -37,7 +37,7 @@ class RandomPeer {
         ObjectId spared{};  // from here on objects belong to others
     };
     RandomPeer(std::unique_ptr<net::Channel> channel, const Settings& settings, Traffic& traffic,
-               std::uint64_t seed);
+               std::uint64_t& highest_unit, std::uint64_t seed);
 
     // Names of all messages that peers of these roles send.
     static std::set<std::string_view> kinds(std::span<const net::Role> roles);

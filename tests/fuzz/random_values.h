@@ -22,8 +22,8 @@ class RandomValues {
     }
     // Mostly short; at times longer than names may be, or than what fits into one message with others.
     std::string name(const std::string& usual) {
-        if (!chance(4)) return usual;
-        constexpr auto Sizes = std::to_array<std::size_t>({0, 256, 257, 4'000, 60'000});
+        if (!chance(6)) return usual;
+        constexpr auto Sizes = std::to_array<std::size_t>({256, 257, 4'000, 60'000, 65'000});
         return std::string(Sizes[below(Sizes.size())], 'n');
     }
 
