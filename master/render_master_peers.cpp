@@ -2,10 +2,12 @@
 #include <algorithm>
 
 #include "master/render_master.h"
+#include "mediator/wire/peer_texts.h"
 
 namespace tessera::master {
 
 void RenderMaster::from_node(NodeRecord& node, wire::ControlMessage& message, TimePoint now) {
+    wire::shorten_texts(message);
     if (const auto* beat = std::get_if<wire::Heartbeat>(&message)) {
         nodes_.heartbeat(node, *beat, now);
     } else if (const auto* report = std::get_if<wire::VersionReport>(&message)) {

@@ -6,6 +6,7 @@
 #include "mediator/base/task_thread.h"
 #include "mediator/scene/validate.h"
 #include "mediator/wire/envelope.h"
+#include "mediator/wire/peer_texts.h"
 #include "node/blob_cache.h"
 #include "node/outbox.h"
 #include "node/worker_pool.h"
@@ -137,7 +138,10 @@ class RenderNode::Loop {
         }
     }
 
-    void perform(SendControl& send) { outbox_.control(wire::encode(send.message)); }
+    void perform(SendControl& send) {
+        wire::shorten_texts(send.message);
+        outbox_.control(wire::encode(send.message));
+    }
     void perform(SendBulk& send) { outbox_.bulk(wire::encode(send.message)); }
     void perform(SendFilm& film) {
         std::vector<net::Bytes> parts;

@@ -199,6 +199,22 @@ TEST_F(FaultyNodes, ATileThatNoNodeCanRenderIsLeftOutAndNamed) {
     expect_balanced();
 }
 
+// The text of an error becomes part of the log, of the status and of the summary, each a message of its own.
+TEST_F(FaultyNodes, ErrorsOfAnyLengthReachTheClientShortened) {
+    for (int i = 0; i < 3; ++i) {
+        cluster.add_node(hooked([](const view::WorkUnit& unit, auto&) {
+            if (unit.tile.x == 0 && unit.tile.y == 0)
+                throw Error(ErrorCode::Internal, "a bad shader" + std::string(100'000, '!'));
+        }));
+    }
+    const client::ViewResult result = render();
+    EXPECT_EQ(result.summary.outcome, session::Outcome::Incomplete);
+    EXPECT_EQ(result.summary.failed_tiles.size(), 1u);
+    EXPECT_NE(result.summary.message.find("a bad shader"), std::string::npos);
+    EXPECT_LT(result.summary.message.size(), 2'000u);
+    expect_balanced();
+}
+
 // Nodes of another kind have other bits: here all of them do.
 TEST_F(FaultyNodes, AReproducibleFrameIsRenderedByOneKindAlone) {
     std::atomic<int> others = 0;

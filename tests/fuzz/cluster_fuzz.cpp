@@ -130,8 +130,8 @@ class Fuzz {
                 traffic_, highest_unit_, random_.below(~0ull)));
         }
     }
-    // As many messages as the peers get rid of, among faults; `done` ends it earlier.
-    void send(std::uint64_t messages, Faults& faults, const std::function<bool()>& done) {
+    // As many messages as the peers get rid of, among faults, with a pause after each; `done` ends it earlier.
+    void send(std::uint64_t messages, Faults& faults, Duration pause, const std::function<bool()>& done) {
         std::uint64_t idle = 0;
         const std::uint64_t end = sent() + messages;
         while (sent() < end && !done()) {
@@ -139,7 +139,7 @@ class Fuzz {
             if (peer.act()) {
                 idle = 0;
                 faults.step(links_.front(), links_.back());
-                std::this_thread::sleep_for(400us);  // versions are published and superseded meanwhile
+                if (pause > Duration{}) std::this_thread::sleep_for(pause);
             } else if (++idle > peers_.size()) {
                 std::this_thread::sleep_for(1ms);
                 idle = 0;
@@ -198,7 +198,8 @@ class Fuzz {
         ann.lock(mine);
         add_peers(true, true);
         auto editing = std::async(std::launch::async, [&] { edit(ann, mine, acknowledged, faults, stop); });
-        send(settings_.messages / 8 + 1, faults, [] { return false; });
+        // Versions are published and superseded in the pauses.
+        send(settings_.messages / 8 + 1, faults, 400us, [] { return false; });
         stop = true;
         if (editing.wait_for(60s) != std::future_status::ready)
             end_at_once("an honest edit got no answer for 60 s");
@@ -327,7 +328,7 @@ class Fuzz {
                                     [&] { return client::render(*session, honest_request(), {}, {}); });
         Faults faults(folder_, random_.below(~0ull));
         const auto done = [&] { return rendering.wait_for(0s) == std::future_status::ready; };
-        send(settings_.messages / 8 + 1, faults, done);
+        send(settings_.messages / 8 + 1, faults, {}, done);
         if (rendering.wait_for(120s) != std::future_status::ready)
             end_at_once("an honest frame did not end within 120 s");
         const client::ViewResult result = rendering.get();

@@ -48,7 +48,7 @@ def finding(fuzz, seeds):
         done = run(fuzz, "--seed", seed, "--messages", MESSAGES, cwd=fuzz.parent, may_fail=True)
         if done.returncode != 0:
             violated = re.findall(r"^violated: (.*)$", done.stdout, re.M)
-            return f"seed {seed}: {violated[0] if violated else f'exit code {done.returncode}'}"
+            return f"seed {seed}: {violated[0][:200] if violated else f'exit code {done.returncode}'}"
     return None
 
 
