@@ -127,7 +127,9 @@ void RenderMaster::step(TimePoint now, std::stop_token stop) {
 
 // Film goes to its thread at once; other messages wait for their turn.
 bool RenderMaster::take_in(net::Received received) {
-    constexpr int BurstLimit = 256;  // so that nothing else is delayed
+    constexpr int BurstLimit = 256;  // both limits: so that nothing else is delayed
+    constexpr Duration BurstTime = std::chrono::milliseconds(4);
+    const TimePoint begun = clock_.now();
     for (int taken = 1;; ++taken) {
         auto* message = std::get_if<net::Message>(&received);
         if (message == nullptr) return true;
@@ -147,7 +149,7 @@ bool RenderMaster::take_in(net::Received received) {
             }
             if (!intake_.put(*message)) drop(*message, "too many messages of this key wait");
         }
-        if (taken == BurstLimit) return false;
+        if (taken == BurstLimit || now - begun >= BurstTime) return false;
         received = channel_->receive(TimePoint{});  // only what has already arrived
     }
 }

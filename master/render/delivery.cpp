@@ -1,7 +1,7 @@
 #include "master/render/delivery.h"
 
 #include <algorithm>
-#include <set>
+#include <iterator>
 
 #include "master/render/picture_chunks.h"
 #include "master/render/view_summary.h"
@@ -11,6 +11,8 @@ namespace tessera::master {
 namespace {
 constexpr std::uint32_t TilesAhead = 32;                   // encoded by the film store and not yet sent
 constexpr std::size_t BytesAhead = std::size_t{32} << 20;  // waiting for a slow client
+constexpr std::size_t BytesAtATime = std::size_t{4}
+                                     << 20;  // of all clients, in a step of the loop: about 2 ms
 std::vector<Rect> tiles_without_samples(const ViewState& view) {
     std::vector<Rect> tiles;
     if (!view.is_last_pass()) return tiles;  // coarse pictures are replaced soon
@@ -182,11 +184,12 @@ void Delivery::report_progress(const ViewState& view, std::uint32_t nodes) {
 
 void Delivery::take(EncodedTile&& tile) {
     if (const auto pending = pending_.find(tile.frame); pending != pending_.end()) {
-        pending->second.tiles.push_back(std::move(tile.bytes));
+        pending->second.tiles.push_back(std::make_shared<net::Bytes>(std::move(tile.bytes)));
         return;
     }
     for (Shipment& shipment : shipments_) {
-        if (shipment.frame == tile.frame) return shipment.tiles.push_back(std::move(tile.bytes));
+        if (shipment.frame == tile.frame)
+            return shipment.tiles.push_back(std::make_shared<net::Bytes>(std::move(tile.bytes)));
     }
 }
 
@@ -286,33 +289,61 @@ std::size_t Delivery::in_flight(SessionId session) const {
 }
 
 void Delivery::send() {
-    std::set<SessionId> busy;
-    std::erase_if(shipments_, [&](Shipment& shipment) {
-        const SessionRecord* session = sessions_.find(shipment.to.first);
-        if (session == nullptr) return true;  // disconnected
-        if (busy.contains(shipment.to.first) || !session->bulk) return false;
-        send(shipment, *session);
-        if (!shipment.is_done()) busy.insert(shipment.to.first);
-        return shipment.is_done();
+    std::vector<SessionId> receivers;  // each once; the next after served_last_ first
+    std::erase_if(shipments_, [&](const Shipment& shipment) {
+        const SessionId id = shipment.to.first;
+        if (sessions_.find(id) == nullptr) return true;  // disconnected
+        if (std::ranges::find(receivers, id) == receivers.end()) receivers.push_back(id);
+        return false;
     });
+    if (const auto last = std::ranges::find(receivers, served_last_); last != receivers.end())
+        std::rotate(receivers.begin(), std::next(last), receivers.end());
+    has_more_ = false;
+    std::size_t budget = BytesAtATime;
+    for (const SessionId id : receivers) {
+        const SessionRecord& session = *sessions_.find(id);
+        bool goes_on = session.bulk.has_value();
+        for (auto shipment = shipments_.begin(); goes_on && shipment != shipments_.end();) {
+            const auto current = shipment++;
+            if (current->to.first != id) continue;
+            send(*current, session, budget);
+            goes_on = current->is_done();
+            if (goes_on) shipments_.erase(current);
+        }
+        if (!has_more_) continue;
+        served_last_ = id;
+        return;
+    }
 }
 
-void Delivery::send(Shipment& shipment, const SessionRecord& session) {
-    const auto has_room = [&] { return outbox_.waiting_bytes(net::Link::Bulk, *session.bulk) <= BytesAhead; };
+// Copies pictures, and tiles that others receive as well; has_more_ when `budget` was too small for that.
+void Delivery::send(Shipment& shipment, const SessionRecord& session, std::size_t& budget) {
+    const auto may_send = [&] {
+        if (outbox_.waiting_bytes(net::Link::Bulk, *session.bulk) > BytesAhead) return false;
+        has_more_ = budget == 0;
+        return !has_more_;
+    };
     if (shipment.header) outbox_.bulk(*session.bulk, *std::exchange(shipment.header, std::nullopt));
     while (shipment.picture_sent < shipment.picture->size()) {  // the picture goes before the film
-        if (!has_room()) return;
+        if (!may_send()) return;
         const auto piece = next_chunk(*shipment.picture, shipment.picture_sent);
         outbox_.bulk(*session.bulk, wire::PictureChunk{.frame = shipment.frame,
                                                        .total = shipment.picture->size(),
                                                        .offset = shipment.picture_sent,
                                                        .data = {piece.begin(), piece.end()}});
         shipment.picture_sent += piece.size();
+        budget -= std::min(budget, piece.size());
     }
-    for (; !shipment.tiles.empty() && has_room(); shipment.tiles.pop_front(), ++shipment.tiles_sent)
-        outbox_.bulk(*session.bulk, std::move(shipment.tiles.front()), &session::WireBytes::film);
+    for (; !shipment.tiles.empty(); shipment.tiles.pop_front(), ++shipment.tiles_sent) {
+        if (!may_send()) return;
+        net::Bytes& tile = *shipment.tiles.front();
+        budget -= std::min(budget, tile.size());
+        const bool is_last_receiver = shipment.tiles.front().use_count() == 1;
+        outbox_.bulk(*session.bulk, is_last_receiver ? std::move(tile) : net::Bytes(tile),
+                     &session::WireBytes::film);
+    }
     const std::uint32_t until = std::min(shipment.tile_count, shipment.tiles_sent + TilesAhead);
-    if (!shipment.film.value || until <= shipment.tiles_requested || !has_room()) return;
+    if (!shipment.film.value || until <= shipment.tiles_requested || !may_send()) return;
     film_.deliver(shipment.film, shipment.frame, shipment.tiles_requested, until);
     shipment.tiles_requested = until;
 }

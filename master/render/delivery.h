@@ -68,8 +68,9 @@ class Delivery {
     void take(EncodedTile&& tile);
     void take(const Reconstructed& made, TimePoint now);
     std::optional<ViewId> ends(std::uint64_t frame) const;  // the view whose end the frame shows
-    // Sends finished frames over links that have room in their send queues.
+    // Sends finished frames over links that have room in their send queues, a few MiB at a time.
     void send();
+    bool has_more() const { return has_more_; }  // that send() could have sent
 
   private:
     static constexpr SessionId Keeper{0};  // of no client
@@ -85,13 +86,14 @@ class Delivery {
         std::array<std::uint64_t, 3> progress{};
         TimePoint progress_at{};
     };
+    using EncodedTiles = std::deque<std::shared_ptr<net::Bytes>>;  // shared by the receivers of a frame
     struct PendingFrame {
         ViewId view;
         FrameFormat format;
         DisplayedState shown;
         wire::FrameHeader header;
         bool is_end = false;
-        std::deque<net::Bytes> tiles;
+        EncodedTiles tiles;
         ViewId film;  // its tiles are encoded as the link drains; 0: all are here
         std::vector<Key> receivers;
     };
@@ -103,7 +105,7 @@ class Delivery {
         std::optional<wire::FrameHeader> header;  // goes first
         std::shared_ptr<const std::vector<std::byte>> picture;
         std::size_t picture_sent = 0;
-        std::deque<net::Bytes> tiles;
+        EncodedTiles tiles;
         std::uint32_t tile_count = 0, tiles_requested = 0, tiles_sent = 0;
         ViewId film;
         bool is_done() const { return picture_sent == picture->size() && tiles_sent == tile_count; }
@@ -112,7 +114,7 @@ class Delivery {
     void begin(const ViewState& view, const FrameFormat& format, std::vector<Key> receivers);
     void ship(std::uint64_t frame, PendingFrame&& pending, const Reconstructed& made);
     session::ViewSummary end_of(const ViewState& view, const Reconstructed& made) const;
-    void send(Shipment& shipment, const SessionRecord& session);
+    void send(Shipment& shipment, const SessionRecord& session, std::size_t& budget);
 
     const ViewTable& views_;
     SessionTable& sessions_;
@@ -121,6 +123,8 @@ class Delivery {
     std::map<Key, Watcher> watchers_;
     std::map<std::uint64_t, PendingFrame> pending_;  // by frame
     std::list<Shipment> shipments_;
+    SessionId served_last_;  // whose shipment used up what may be sent at a time
+    bool has_more_ = false;
     std::vector<Ended> ended_;
     struct FrameCost {
         TimePoint started{};

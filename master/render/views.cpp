@@ -387,6 +387,7 @@ void Views::deliver(TimePoint now) {
 }
 
 TimePoint Views::next_event(TimePoint now) const {
+    if (delivery_.has_more()) return now;
     TimePoint next = TimePoint::max();
     for (const auto& [id, view] : table_.all()) next = std::min(next, runner_.next_event(view, now));
     if (group_.is_open() || !picks_.empty()) next = std::min(next, now + settings_.frame_interval);
