@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 constexpr net::Role Roles[] = {net::Role::Viewer, net::Role::Editor, net::Role::Node, net::Role::Operator};
 
 session::ViewRequest honest_request() {
-    session::ViewRequest request{.stop = {.spp = 16}, .wait_limit = 120s, .film = true};
+    session::ViewRequest request{.stop = {.spp = 64}, .wait_limit = 120s, .film = true};
     request.view.width = 96;
     request.view.height = 64;
     request.view.window = {0, 0, 96, 64};

@@ -154,7 +154,7 @@ EditGenerator::Encoded EditGenerator::long_edit() {
     Encoded encoded{.head = {.session = {}, .sequence = edit.sequence, .base = edit.base, .blob = {}},
                     .bytes = {}};
     const std::vector<std::byte> part = wire::encode(edit);
-    for (std::uint64_t i = 400 + random_.below(1500); i > 0; --i)
+    for (std::uint64_t i = 300 + random_.below(700); i > 0; --i)
         encoded.bytes.insert(encoded.bytes.end(), part.begin(), part.end());
     return encoded;
 }

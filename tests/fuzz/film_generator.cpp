@@ -19,14 +19,14 @@ void FilmGenerator::add(const wire::OpenView& view) {
     if (views_.size() > 16) views_.pop_front();
 }
 
-// Half of the time the same again: one failure alone is not yet believed.
+// Half of the time the same again: one failure alone is not yet believed. Else one of the first units of the latest known
+// pass, or of one that began since; the ids of a pass begin at a multiple of 2^32.
 UnitId FilmGenerator::unit_of_others() {
     if (random_.chance(50) && latest_of_others_.value != 0 && !dealt_.contains(latest_of_others_))
         return latest_of_others_;
-    constexpr std::uint64_t Near = 48;
     do {
-        const std::uint64_t lowest = highest_unit_ > Near ? highest_unit_ - Near : 0;
-        latest_of_others_ = UnitId{random_.chance(90) ? lowest + random_.below(2 * Near) : random_.extreme()};
+        const std::uint64_t pass = (highest_unit_ >> 32) + (random_.chance(50) ? 0 : random_.below(8));
+        latest_of_others_ = UnitId{random_.chance(90) ? (pass << 32) + random_.below(32) : random_.extreme()};
     } while (dealt_.contains(latest_of_others_));
     return latest_of_others_;
 }

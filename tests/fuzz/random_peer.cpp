@@ -165,12 +165,25 @@ void RandomPeer::take(const wire::ControlMessage& message) {
         edits_.learned(changes->to);
     } else if (const auto* list = std::get_if<wire::Changes>(&message)) {
         edits_.learned(list->list.to, list->list.state_hash);
+        if (settings_.role == net::Role::Node && random_.chance(80)) ask_for_work();
     } else if (const auto* work = std::get_if<wire::Work>(&message)) {
         film_.add(work->unit);
     } else if (const auto* view = std::get_if<wire::OpenView>(&message)) {
         film_.add(*view);
     }
     if (blobs_.size() > 16) blobs_.pop_front();
+}
+
+// As a node that has built the version.
+void RandomPeer::ask_for_work() {
+    wire::VersionReport report;
+    report.version = edits_.version();
+    report.state_hash = edits_.state_hash();
+    (void)send(report);
+    wire::Heartbeat heartbeat;
+    heartbeat.version = edits_.version();
+    heartbeat.free_slots = 1 + static_cast<std::uint32_t>(random_.below(4));
+    (void)send(heartbeat);
 }
 
 void RandomPeer::take(const wire::BulkMessage& message) {
@@ -215,7 +228,7 @@ bool RandomPeer::act() {
     }
     if (random_.chance(50)) return send_rarest();
     if (settings_.role == net::Role::Node) {
-        if (random_.chance(20)) return send_filled(wire::UnitReleased{});
+        if (random_.chance(settings_.may_forge ? 20 : 60)) return send_filled(wire::UnitReleased{});
         if (random_.chance(60))
             return send(wire::BulkMessage(film_.film(edits_.version(), settings_.may_forge)));
         return random_.chance(50) ? send_filled(wire::Heartbeat{}) : send_filled(wire::VersionReport{});

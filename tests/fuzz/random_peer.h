@@ -57,6 +57,7 @@ class RandomPeer {
     void greet();
     void take(const wire::ControlMessage& message);
     void take(const wire::BulkMessage& message);
+    void ask_for_work();
     bool send_rarest();
     bool send_filled(wire::ControlMessage message);
     bool send_edit();
