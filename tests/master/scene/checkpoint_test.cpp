@@ -225,6 +225,31 @@ TEST_F(CheckpointTest, HugeFilesTakeNoMemory) {
     EXPECT_EQ(scan.byte_size, std::uint64_t{1} << 40);
 }
 
+// Takes 5 GiB of memory, so it has the label `long`.
+TEST_F(CheckpointTest, DISABLED_OneOfMoreThan2GiBIsReportedAndLosesNothing) {
+    auto master = start(1);
+    join_all(master->authority);
+    for (std::uint64_t step = 1; step <= 60; ++step) act(master->authority, step);
+    checkpoint(*master, folder, 1);
+    for (std::uint64_t step = 61; step <= 90; ++step) act(master->authority, step);
+    const std::uint64_t number = master->journal->start_segment();
+    {
+        CheckpointWriter writer(folder);
+        writer.start({number, {std::string((std::size_t{2} << 30) + 1000, 'x'), {}}, master->authority.save(), {}});
+        writer.wait();
+        const auto result = writer.take_result();
+        ASSERT_TRUE(result);
+        EXPECT_NE(result->problem.find("more than 2 GiB"), std::string::npos) << result->problem;
+    }
+    EXPECT_FALSE(fs::exists(checkpoint_path(folder, number)));
+    for (std::uint64_t step = 91; step <= 120; ++step) act(master->authority, step);
+    master->authority.record_to(nullptr);
+    master->journal.reset();
+    master->files.reset();
+    const auto again = start(2);
+    expect_same(master->authority, again->authority);
+}
+
 TEST_F(CheckpointTest, MissingFolderIsReported) {
     auto master = start(1);
     CheckpointWriter writer(folder / "nowhere");
