@@ -7,6 +7,7 @@
 #include "mediator/base/malloc_trim.h"
 #include "mediator/net/zmq_channel.h"
 #include "mediator/program/command_line.h"
+#include "mediator/program/crash_report.h"
 #include "mediator/program/signals.h"
 
 namespace {
@@ -77,6 +78,7 @@ int main(int argc, char** argv) {
 
     master::MasterOptions options;
     if (const auto exit = master::parse_options(argc, argv, options, std::cout, std::cerr)) return *exit;
+    cli::report_crashes(options.log, options.session);
     try {
         return serve(options);
     } catch (const Error& error) {

@@ -8,6 +8,7 @@
 #include "mediator/base/malloc_trim.h"
 #include "mediator/net/zmq_channel.h"
 #include "mediator/program/command_line.h"
+#include "mediator/program/crash_report.h"
 #include "mediator/program/signals.h"
 #include "node/config.h"
 #include "node/render_node.h"
@@ -81,6 +82,7 @@ int main(int argc, char** argv) {
 
     node::NodeOptions options;
     if (const auto exit = node::parse_options(argc, argv, options, std::cout, std::cerr)) return *exit;
+    cli::report_crashes(options.log, {});
     try {
         return serve(options);
     } catch (const Error& error) {

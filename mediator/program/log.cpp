@@ -1,10 +1,12 @@
 #include "mediator/program/log.h"
 
+#include <spdlog/sinks/base_sink.h>
 #include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include "mediator/base/error.h"
+#include "mediator/program/crash_report.h"
 
 namespace tessera::cli {
 
@@ -23,6 +25,15 @@ spdlog::sink_ptr sink(const std::string& file) {
     }
 }
 
+class CrashReportSink : public spdlog::sinks::base_sink<std::mutex> {
+    void sink_it_(const spdlog::details::log_msg& message) override {
+        spdlog::memory_buf_t line;
+        formatter_->format(message, line);
+        remember_for_crash_report({line.data(), line.size()});
+    }
+    void flush_() override {}
+};
+
 }  // namespace
 
 std::vector<std::string> log_levels() {
@@ -30,7 +41,8 @@ std::vector<std::string> log_levels() {
 }
 
 Log::Log(const LogSettings& settings)
-    : implementation_(new Implementation{spdlog::logger(settings.program, sink(settings.file))}) {
+    : implementation_(new Implementation{
+          spdlog::logger(settings.program, {sink(settings.file), std::make_shared<CrashReportSink>()})}) {
     implementation_->logger.set_level(spdlog::level::from_str(settings.level));
     implementation_->logger.flush_on(spdlog::level::info);
     implementation_->logger.set_pattern("%Y-%m-%d %H:%M:%S.%e %n %^%l%$ %v");

@@ -1,6 +1,7 @@
 // What operators do to processes: signals, and changes of the allow-list.
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -126,6 +127,39 @@ TEST(Operators, WhatDoesNotFitIntoTheMemoryOfTheMasterIsRefused) {
     EXPECT_NE(large.err().find("--memory"), std::string::npos) << large.err();
     const json small = cluster.render("small", scene_file("still.glb"), {"--size", "64x64", "--spp", "1"});
     EXPECT_EQ(small["spp"], 1);
+}
+
+std::string crash_report(const std::filesystem::path& folder, const ChildProcess& process,
+                         const std::string& program) {
+    std::ifstream file(folder / (program + "-crash-" + std::to_string(process.pid()) + ".txt"));
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(Operators, AProgramThatDiesOfABugLeavesAReport) {
+    RealCluster cluster({"--heartbeat", "0.25"}, RealCluster::Session::Kept);
+    const std::string log = cluster.folder() / "node.log";
+    ChildProcess node = cluster.start_node("a", {"--backend", "null", "--log-file", log});
+    ASSERT_TRUE(cluster.wait_for([](const json& status) { return status["nodes"].size() == 1; }));
+    for (auto& [process, number, expected] :
+         {std::tuple<ChildProcess&, int, const char*>{node, SIGABRT, "(SIGABRT)"},
+          {cluster.master(), SIGSEGV, "(SIGSEGV)"}}) {
+        process.signal(number);
+        EXPECT_EQ(process.wait(1min).value_or(0), 128 + number);
+        const bool is_node = &process == &node;
+        const std::string report =
+            is_node ? crash_report(cluster.folder().path(), process, "tessera-node")
+                    : crash_report(cluster.folder() / "session", process, "tessera-master");
+        EXPECT_NE(report.find(expected), std::string::npos) << report;
+        EXPECT_NE(report.find(is_node ? "tessera-node 0." : "tessera-master 0."), std::string::npos)
+            << report;
+        EXPECT_NE(report.find(is_node ? "back-end null" : "listening on"), std::string::npos)
+            << "the log: " << report;
+        if (::access("/usr/bin/eu-stack", X_OK) != 0) continue;
+        EXPECT_NE(report.find("TID "), std::string::npos) << report;
+        EXPECT_NE(report.find(is_node ? "RenderNode" : "RenderMaster"), std::string::npos)
+            << "of the loop: " << report;
+    }
+    EXPECT_NE(cluster.master().err().find("has crashed"), std::string::npos) << cluster.master().err();
 }
 
 TEST(Operators, AStoppedMasterRemovesNoPeerWhenItGoesOn) {
