@@ -7,6 +7,7 @@ hold() is a cable that is pulled for a while, forget() a firewall that drops its
 import collections
 import contextlib
 import queue
+import random
 import socket
 import threading
 import time
@@ -21,10 +22,10 @@ Counts = collections.namedtuple("Counts", "at to_master to_nodes")  # s (monoton
 
 
 class Direction:
-    """One direction of a line: `rate` in bits per second, `latency` in seconds."""
+    """One direction of a line: `rate` in bits per second, `latency` and `jitter` in seconds."""
 
-    def __init__(self, rate, latency):
-        self.seconds_per_byte, self.latency = 8.0 / rate, latency
+    def __init__(self, rate, latency, jitter):
+        self.seconds_per_byte, self.latency, self.jitter = 8.0 / rate, latency, jitter
         self.byte_count = 0
         self._free_at = 0.0  # when the line has sent all that was given to it
         self._lock = threading.Lock()
@@ -60,11 +61,11 @@ class Connection:
 
 class Line:
     """Forwards 127.0.0.1:`port` + i to 127.0.0.1:`target` + i, for i of 0 to `ports` - 1. rate: bits per second in each direction;
-    latency: seconds that each direction adds. Use it in a with statement."""
+    latency: seconds that each direction adds; jitter: up to so many more, at random. Use it in a with statement."""
 
-    def __init__(self, port, target, *, ports=2, rate=1e9, latency=1e-4):
+    def __init__(self, port, target, *, ports=2, rate=1e9, latency=1e-4, jitter=0.0):
         self.rate = rate
-        self.to_master, self.to_nodes = Direction(rate, latency), Direction(rate, latency)
+        self.to_master, self.to_nodes = Direction(rate, latency, jitter), Direction(rate, latency, jitter)
         self._closed = False
         self._lock = threading.Lock()  # protects what follows
         self._sockets, self._threads, self._connections, self._forgotten, self._held = [], [], [], [], False
@@ -193,7 +194,8 @@ class Line:
         while True:
             data = self._received(source, passes)
             sent_at = direction.occupy(len(data))
-            on_the_way.put((sent_at + direction.latency, data))
+            # Bytes keep their order: the writer waits for each chunk before it looks at the next one.
+            on_the_way.put((sent_at + direction.latency + random.uniform(0.0, direction.jitter), data))
             if not data:
                 return
             sleep_until(sent_at)
