@@ -38,8 +38,7 @@ std::optional<int> parse_options(int argc, const char* const* argv, MasterOption
                 "percent of the units that another node of the same kind renders again, to compare the bits; "
                 "a node that differs from two others is put into quarantine",
                 options.verify_percent);
-    line.choice("--log-level", "log verbosity", options.log.level, cli::log_levels());
-    line.option("--log-file", "write the log there instead of standard error", options.log.file);
+    cli::add_log_options(line, options.log);
     line.examples({"tessera keys ~/.tessera && tessera-master --keys ~/.tessera",
                    "tessera-master --listen tcp://0.0.0.0:7420 --keys ~/.tessera",
                    "tessera-master --keys ~/.tessera --session /var/lib/tessera/room",

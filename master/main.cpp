@@ -16,13 +16,14 @@ using namespace tessera;
 
 master::EventSink event_log(const cli::Log& log) {
     return [&log](const master::Event& event) {
+        if (event.is_detail) return log.debug(event.text, event.about);
         switch (event.severity) {
             case wire::Severity::Info:
-                return log.info(event.text);
+                return log.info(event.text, event.about);
             case wire::Severity::Warning:
-                return log.warning(event.text);
+                return log.warning(event.text, event.about);
             case wire::Severity::Error:
-                return log.error(event.text);
+                return log.error(event.text, event.about);
         }
     };
 }

@@ -376,7 +376,8 @@ void RenderMaster::hello(const net::Message& message, wire::Hello hello, TimePoi
     if (is_node) {
         if (const auto former = nodes_.removed(hello.resume_token)) dispatcher_.came_back(*former);
         events_({wire::Severity::Info,
-                 "node " + hello.name + " joined (" + hello.backend + ", " + hello.kind + ")"});
+                 "node " + hello.name + " joined (" + hello.backend + ", " + hello.kind + ")",
+                 {.node = hello.name}});
         NodeRecord& node =
             nodes_.add(NodeId{number}, token, message.peer, message.user, std::move(hello), now);
         dispatcher_.joined(node, now);

@@ -33,11 +33,14 @@ void RenderMaster::from_node(NodeRecord& node, wire::ControlMessage& message, Ti
     } else if (const auto* release = std::get_if<wire::UnitReleased>(&message)) {
         dispatcher_.released(node, *release, now);
     } else if (const auto* notice = std::get_if<wire::Notice>(&message)) {
-        events_({notice->severity, "node " + node.hello.name + ": " + notice->text});
+        events_(
+            {notice->severity, "node " + node.hello.name + ": " + notice->text, {.node = node.hello.name}});
     } else if (const auto* goodbye = std::get_if<wire::Goodbye>(&message)) {
         dispatcher_.goodbye(node, *goodbye);
         node.leaving = true;  // stays in the table until its timeout, since film may still arrive
-        events_({wire::Severity::Info, "node " + node.hello.name + " leaves: " + goodbye->reason});
+        events_({wire::Severity::Info,
+                 "node " + node.hello.name + " leaves: " + goodbye->reason,
+                 {.node = node.hello.name}});
     }
 }
 
@@ -176,7 +179,8 @@ void RenderMaster::remove_node(NodeId id, const std::string& why, Dispatcher::De
         departure = Dispatcher::Departure::Expected;
     } else {
         events_({wire::Severity::Warning,
-                 "node " + node->hello.name + " is gone: " + why + dispatcher_.rendered_by(id)});
+                 "node " + node->hello.name + " is gone: " + why + dispatcher_.rendered_by(id),
+                 {.node = node->hello.name}});
     }
     outbox_.forget(net::Link::Control, node->control);
     if (node->bulk) outbox_.forget(net::Link::Bulk, *node->bulk);
@@ -207,10 +211,10 @@ void RenderMaster::remove_timed_out_peers(TimePoint now) {
     for (const SessionId id : not_reading) {
         const SessionRecord* session = sessions_.find(id);
         if (session == nullptr) continue;
-        events_(
-            {wire::Severity::Warning,
-             session->hello.name + " (" + session->user +
-                 ") does not read its picture while others wait for its scene to end: it counts as lost"});
+        events_({wire::Severity::Warning,
+                 session->hello.name + " (" + session->user +
+                     ") does not read its picture while others wait for its scene to end: it counts as lost",
+                 {.session = session->id}});
         outbox_.control(session->control,
                         wire::Refusal{"you have not read your picture for too long while others waited for "
                                       "your scene to end: tessera jobs lists it"});

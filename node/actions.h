@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mediator/backend/backend.h"
+#include "mediator/base/log_subject.h"
 #include "mediator/wire/messages.h"
 #include "node/scene_replica.h"
 #include "node/settings.h"
@@ -54,6 +55,8 @@ struct SaveBlob {
 struct Report {
     wire::Severity severity = wire::Severity::Info;
     std::string text;
+    LogSubject about{};
+    bool is_detail = false;  // a step in the life of a unit: for --log-level debug
 };
 using Action =
     std::variant<SendControl, SendBulk, SendFilm, PauseBulk, OpenBulk, DiscardPendingFilm, Reconnect,
@@ -68,6 +71,11 @@ struct Effects {
     void add(Action action) { actions.push_back(std::move(action)); }
     void send(wire::ControlMessage message) { add(SendControl{std::move(message)}); }
     void report(wire::Severity severity, std::string text) { add(Report{severity, std::move(text)}); }
+    void trace(const view::WorkUnit& unit, std::string text) {
+        add(Report{.text = std::move(text),
+                   .about = {.view = unit.view, .unit = unit.id, .version = unit.version},
+                   .is_detail = true});
+    }
     void malformed(const std::string& reason) {
         ++counters.malformed_messages;
         report(wire::Severity::Warning, "dropped a message of the master: " + reason);

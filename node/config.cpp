@@ -71,8 +71,7 @@ std::optional<int> parse_options(int argc, const char* const* argv, NodeOptions&
         "its units to the end first",
         drain, {"hand-back", "finish"});
     line.option("--simulate-cost", "back-end null only: time per sample of a pixel, like 20us", cost);
-    line.choice("--log-level", "log verbosity", options.log.level, cli::log_levels());
-    line.option("--log-file", "write the log there instead of standard error", options.log.file);
+    cli::add_log_options(line, options.log);
     line.required("--master");
     line.examples(
         {"tessera-node --master tcp://10.0.0.5:7420 --keys ~/node-keys",

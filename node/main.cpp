@@ -18,13 +18,14 @@ namespace {
 using namespace tessera;
 
 void log_report(const cli::Log& log, const node::Report& report) {
+    if (report.is_detail) return log.debug(report.text, report.about);
     switch (report.severity) {
         case wire::Severity::Info:
-            return log.info(report.text);
+            return log.info(report.text, report.about);
         case wire::Severity::Warning:
-            return log.warning(report.text);
+            return log.warning(report.text, report.about);
         case wire::Severity::Error:
-            return log.error(report.text);
+            return log.error(report.text, report.about);
     }
 }
 

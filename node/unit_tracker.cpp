@@ -140,6 +140,7 @@ void UnitTracker::release(UnitId unit, wire::ReleaseReason reason, std::string m
     queue_.release(unit);
     effects_.state_changed = true;
     ++effects_.counters.units_released;
+    effects_.add(Report{.text = "unit is released: " + message, .about = {.unit = unit}, .is_detail = true});
     effects_.send(wire::UnitReleased{unit, reason, std::move(message)});
 }
 
@@ -212,6 +213,7 @@ void UnitTracker::abandon() {
 void UnitTracker::dispatch() {
     if (replica_.is_building()) return;
     while (const auto unit = queue_.next(replica_.version())) {
+        effects_.trace(*unit, "unit is being rendered");
         effects_.add(Render{views_.at(unit->view).view, *unit});
     }
 }
@@ -228,7 +230,9 @@ void UnitTracker::finished(UnitId id, UnitOutcome&& outcome, TimePoint now) {
         queue_.release(id);
     } else if (!outcome.error.empty()) {
         release(id, wire::ReleaseReason::Failed, outcome.error);
-        effects_.report(wire::Severity::Error, outcome.error);
+        effects_.add(Report{wire::Severity::Error,
+                            outcome.error,
+                            {.view = unit->view, .unit = id, .version = unit->version}});
     } else if (outcome.result.status == backend::RenderStatus::Refused) {
         release(id, wire::ReleaseReason::OtherVersion, "the back-end is at another version");
     } else {
@@ -240,6 +244,7 @@ void UnitTracker::finished(UnitId id, UnitOutcome&& outcome, TimePoint now) {
         if (!wanted || outcome.result.blocks.empty()) {
             release(id, reason, "stopped");
         } else if (whole) {
+            effects_.trace(*unit, "unit is rendered");
             queue_.hold(id);
             held_.add({.unit = unit->id,
                        .view = unit->view,
@@ -317,6 +322,7 @@ void UnitTracker::film_withdrawn(UnitId unit) {
 
 void UnitTracker::film_sent(UnitId unit) {
     effects_.state_changed = true;
+    effects_.add(Report{.text = "film of the unit is sent", .about = {.unit = unit}, .is_detail = true});
     queue_.release(unit);
     if (const auto release = release_after_film_.extract(unit)) {
         ++effects_.counters.units_released;

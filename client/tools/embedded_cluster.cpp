@@ -71,7 +71,7 @@ void EmbeddedCluster::add_node(const EmbeddedSettings& settings, std::uint32_t i
         node_settings,
         node::NodeCallbacks{.event =
                                 [this](const node::Report& report) {
-                                    events_({report.severity, report.text});
+                                    events_({report.severity, report.text, report.about, report.is_detail});
                                 },
                             .reconnect = {}}));
 }

@@ -26,13 +26,14 @@ constexpr ObjectId UsualFirstId{1u << 16};
 
 master::EventSink quiet_log(const cli::Log& log) {
     return [&log](const master::Event& event) {
+        if (event.is_detail) return log.debug(event.text, event.about);
         switch (event.severity) {
             case wire::Severity::Info:
-                return log.debug(event.text);
+                return log.debug(event.text, event.about);
             case wire::Severity::Warning:
-                return log.warning(event.text);
+                return log.warning(event.text, event.about);
             case wire::Severity::Error:
-                return log.error(event.text);
+                return log.error(event.text, event.about);
         }
     };
 }

@@ -217,11 +217,6 @@ void add_cluster_to(cli::CommandLine& command, RenderOptions& options) {
     command.flag("--no-wait", "exit with 75 if the cluster is busy, instead of waiting", options.no_wait);
 }
 
-void add_log_to(cli::CommandLine& command, RenderOptions& options) {
-    command.choice("--log-level", "log verbosity", options.log.level, cli::log_levels());
-    command.option("--log-file", "write the log to this file instead of standard error", options.log.file);
-}
-
 }  // namespace
 
 void RenderOptions::add_coverage_to(cli::CommandLine& command) {
@@ -232,7 +227,7 @@ void RenderOptions::add_coverage_to(cli::CommandLine& command) {
     command.option("--spp", "samples per pixel (16)", spp);
     add_cluster_to(command, *this);
     command.flag("--json", "print one JSON object", json);
-    add_log_to(command, *this);
+    cli::add_log_options(command, log);
     command.examples({"tessera coverage room.glb", "tessera coverage room.glb --camera 1 --json -o seen.png",
                       "tessera coverage room.glb --master tcp://render-1:7420 --keys ~/.tessera"});
 }
@@ -269,7 +264,7 @@ void RenderOptions::add_to(cli::CommandLine& command) {
                  "downloads the picture",
                  detach);
     command.flag("--json", "print one JSON object with all measurements", json);
-    add_log_to(command, *this);
+    cli::add_log_options(command, log);
     command.examples(
         {"tessera render room.glb -o room.exr -o room.png --spp 256",
          "tessera render room.glb -o room.png --spp 8 --denoise",

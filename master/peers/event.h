@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 
+#include "mediator/base/log_subject.h"
 #include "mediator/wire/messages.h"
 
 namespace tessera::master {
@@ -11,6 +12,8 @@ namespace tessera::master {
 struct Event {
     wire::Severity severity = wire::Severity::Info;
     std::string text;
+    LogSubject about{};
+    bool is_detail = false;  // a step in the life of a unit: for --log-level debug
 };
 using EventSink = std::function<void(const Event&)>;
 

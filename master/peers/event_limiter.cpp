@@ -17,6 +17,12 @@ void put_escaped(std::string& out, unsigned char byte) {
     out += Digits[byte & 15];
 }
 
+Event escaped(Event event) {
+    event.text = master::escaped(event.text);
+    event.about.node = master::escaped(event.about.node);
+    return event;
+}
+
 }  // namespace
 
 std::string escaped(const std::string& text) {
@@ -55,6 +61,8 @@ bool EventLimiter::passes(Recent& recent, int limit, const std::string& beginnin
 }
 
 void EventLimiter::operator()(const Event& event) {
+    if (event.is_detail)
+        return sink_(escaped(event));  // there are no more of these than the master deals units
     const std::string beginning = event.text.substr(0, BeginningLength);
     const TimePoint now = clock_.now();
     {
@@ -65,7 +73,7 @@ void EventLimiter::operator()(const Event& event) {
             !passes(all_, AllPerSecond, "", event, now))
             return;
     }
-    sink_({event.severity, escaped(event.text)});
+    sink_(escaped(event));
 }
 
 void EventLimiter::tick() {

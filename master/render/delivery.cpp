@@ -9,10 +9,10 @@
 namespace tessera::master {
 
 namespace {
-constexpr std::uint32_t TilesAhead = 32;                   // encoded by the film store and not yet sent
-constexpr std::size_t BytesAhead = std::size_t{32} << 20;  // waiting for a slow client
-constexpr std::size_t BytesAtATime = std::size_t{4}
-                                     << 20;  // of all clients, in a step of the loop: about 2 ms
+constexpr std::uint32_t TilesAhead = 32;                    // encoded by the film store and not yet sent
+constexpr std::size_t BytesAhead = std::size_t{32} << 20;   // waiting for a slow client
+constexpr std::size_t BytesAtATime = std::size_t{4} << 20;  // to all clients, in a step: about 2 ms
+
 std::vector<Rect> tiles_without_samples(const ViewState& view) {
     std::vector<Rect> tiles;
     if (!view.is_last_pass()) return tiles;  // coarse pictures are replaced soon

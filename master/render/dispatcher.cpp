@@ -34,7 +34,11 @@ Scheduler& Dispatcher::begin(const view::View& view, const PlanSettings& plan,
     const auto it = passes_.emplace(
         view.id, Active{view, requirements, plan.hold_film, first,
                         Scheduler(plan, view.id, view.revision, requirements.version, first, deadline)});
-    return it.first->second.scheduler;
+    Scheduler& scheduler = it.first->second.scheduler;
+    scheduler.observe_ends([this](const view::WorkUnit& unit, NodeId node, Fate fate) {
+        trace(unit, node, "unit ends: " + std::string(enumerator_name(fate)));
+    });
+    return scheduler;
 }
 
 void Dispatcher::end(ViewId pass) {
@@ -93,6 +97,13 @@ Dispatcher::Active* Dispatcher::holder(UnitId unit) {
     return unit.value - first.value < UnitsPerPass ? active(pass) : nullptr;
 }
 
+void Dispatcher::trace(const view::WorkUnit& unit, NodeId id, std::string text) const {
+    const NodeRecord* node = nodes_.find(id);
+    LogSubject about{.node = node == nullptr ? "" : node->hello.name, .view = unit.view, .unit = unit.id};
+    if (unit.version.number != 0) about.version = unit.version;
+    events_({.text = std::move(text), .about = std::move(about), .is_detail = true});
+}
+
 // ---- messages ----
 
 void Dispatcher::send_cancellations(const std::vector<Cancellation>& cancellations) {
@@ -101,6 +112,7 @@ void Dispatcher::send_cancellations(const std::vector<Cancellation>& cancellatio
     for (const Cancellation& cancellation : cancellations) {
         by_node[cancellation.node].push_back(cancellation.unit);
         if (cancelled_.size() < MaxUnconfirmed) cancelled_.emplace(cancellation.unit, clock_.now());
+        trace({.id = cancellation.unit}, cancellation.node, "unit is cancelled");
     }
     for (const auto& [id, units] : by_node) {
         const NodeRecord* node = nodes_.find(id);
@@ -123,7 +135,9 @@ void Dispatcher::collect_overdue(TimePoint now) {
     for (auto& [id, node] : nodes_.all()) {
         if (node.quarantined && quarantine_.find(node.identity(), now) == nullptr) {
             node.quarantined = false;
-            events_({wire::Severity::Info, "node " + node.hello.name + " leaves quarantine"});
+            events_({wire::Severity::Info,
+                     "node " + node.hello.name + " leaves quarantine",
+                     {.node = node.hello.name}});
         }
         announce_idle(node);
         close_verified_views(node);
@@ -175,7 +189,9 @@ void Dispatcher::released(NodeRecord& node, const wire::UnitReleased& release, T
     }
     if (!pass->scheduler.failed(release.unit, node.id, UnitTrouble::Kind::Failed, release.message))
         return;  // of a unit that it does not hold: it says nothing
-    events_({wire::Severity::Error, "node " + node.hello.name + ": " + release.message});
+    events_({wire::Severity::Error,
+             "node " + node.hello.name + ": " + release.message,
+             {.node = node.hello.name, .view = pass->view.id, .unit = release.unit}});
     take_explained(pass->scheduler, now);
 }
 

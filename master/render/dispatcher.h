@@ -128,6 +128,7 @@ class Dispatcher {
     };
     Active* active(ViewId pass);
     Active* holder(UnitId unit);
+    void trace(const view::WorkUnit& unit, NodeId node, std::string text) const;
     bool suits(const NodeRecord& node, const view::View& view, const NodeRequirements& requirements) const;
     void lose(Active& pass, UnitLedger::Loss loss);
     bool ready(const NodeRecord& node, const view::View& view, const NodeRequirements& requirements) const;

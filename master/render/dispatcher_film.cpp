@@ -102,7 +102,8 @@ void Dispatcher::report_contradiction(const Active& pass, const MergeReport& rep
              "two nodes gave different bits for samples " + std::to_string(report.block.first) + ".." +
                  std::to_string(report.block.end()) + " (second: " + node.hello.name +
                  "); replay: tessera probe SCENE --pixel " + std::to_string(tile.x) + "," +
-                 std::to_string(tile.y) + " --sample " + std::to_string(report.block.first)});
+                 std::to_string(tile.y) + " --sample " + std::to_string(report.block.first),
+             {.node = node.hello.name, .view = report.view, .unit = report.unit}});
 }
 
 // ---- acknowledgements ----
@@ -138,7 +139,7 @@ void Dispatcher::take_explained(Scheduler& scheduler, TimePoint now) {
 }
 
 void Dispatcher::fault(NodeRecord& node, const std::string& reason, TimePoint now) {
-    events_({wire::Severity::Warning, "node " + node.hello.name + ": " + reason});
+    events_({wire::Severity::Warning, "node " + node.hello.name + ": " + reason, {.node = node.hello.name}});
     if (quarantine_.fault(node.identity(), reason, now)) start_quarantine(node, reason, now);
 }
 
@@ -148,7 +149,8 @@ void Dispatcher::start_quarantine(NodeRecord& node, const std::string& reason, T
     events_({wire::Severity::Error,
              "node " + node.hello.name + " gets no work for " +
                  std::to_string(std::chrono::ceil<std::chrono::seconds>(time).count()) + " s: " + reason +
-                 "; mend it, then: tessera node release " + node.hello.name});
+                 "; mend it, then: tessera node release " + node.hello.name,
+             {.node = node.hello.name}});
     take_units_back(node, Fate::Refused);
 }
 

@@ -7,6 +7,18 @@
 
 namespace tessera::master {
 
+namespace {
+
+std::string samples_text(const view::WorkUnit& unit) {
+    const Rect& tile = unit.tile;
+    return "unit " + std::to_string(unit.id.value) + " (" + std::to_string(tile.width) + "x" +
+           std::to_string(tile.height) + " pixels at " + std::to_string(tile.x) + "," +
+           std::to_string(tile.y) + ", samples " + std::to_string(unit.block.first) + ".." +
+           std::to_string(unit.block.first + unit.block.count() - 1) + ")";
+}
+
+}  // namespace
+
 bool Dispatcher::suits(const NodeRecord& node, const view::View& view,
                        const NodeRequirements& requirements) const {
     return master::suits(node, view, requirements.version) && (!node.is_null || may_use_null_nodes(view)) &&
@@ -69,6 +81,7 @@ void Dispatcher::send_work(NodeRecord& node, const view::View& view, Duration ho
     if (auto opening = node.opening(view, hold_film)) outbox_.control(node.control, *std::move(opening));
     node.pending[unit.id] = ++node.work_sequence;
     outbox_.control(node.control, wire::Work{node.work_sequence, unit});
+    trace(unit, node.id, "unit is dealt: " + samples_text(unit));
 }
 
 Dispatcher::Prospects Dispatcher::prospects(const view::View& view, const NodeRequirements& wanted) const {
@@ -187,18 +200,6 @@ std::vector<std::string> Dispatcher::left_out(ViewId pass) const {
 
 // ---- lost nodes ----
 
-namespace {
-
-std::string samples_text(const view::WorkUnit& unit) {
-    const Rect& tile = unit.tile;
-    return "unit " + std::to_string(unit.id.value) + " (" + std::to_string(tile.width) + "x" +
-           std::to_string(tile.height) + " pixels at " + std::to_string(tile.x) + "," +
-           std::to_string(tile.y) + ", samples " + std::to_string(unit.block.first) + ".." +
-           std::to_string(unit.block.first + unit.block.count() - 1) + ")";
-}
-
-}  // namespace
-
 std::string Dispatcher::rendered_by(NodeId id) const {
     constexpr std::size_t MaxNamed = 8;
     const NodeRecord* node = nodes_.find(id);
@@ -245,7 +246,7 @@ void Dispatcher::lose(Active& pass, UnitLedger::Loss loss) {
     pass.scheduler.node_gone(loss);
     const auto& failed = pass.scheduler.failed_tiles();
     for (std::size_t i = before; i < failed.size(); ++i)
-        events_({wire::Severity::Error, "a tile is left out: " + failed[i].message});
+        events_({wire::Severity::Error, "a tile is left out: " + failed[i].message, {.view = pass.view.id}});
 }
 
 void Dispatcher::came_back(NodeId former) {
@@ -288,7 +289,8 @@ void Dispatcher::announce_stuck(NodeRecord& node, TimePoint now) {
         {wire::Severity::Warning,
          "node " + node.hello.name + " is stuck: it has finished nothing for " +
              std::to_string(std::chrono::round<std::chrono::seconds>(now - node.last_progress_at).count()) +
-             " s; others get its units"});
+             " s; others get its units",
+         {.node = node.hello.name}});
 }
 
 void Dispatcher::announce_idle(NodeRecord& node) {
@@ -296,7 +298,7 @@ void Dispatcher::announce_idle(NodeRecord& node) {
     const std::string reason = idle_reason(node);
     if (reason.empty() || node.announced.size() >= MaxAnnounced || !node.announced.insert(reason).second)
         return;
-    events_({wire::Severity::Info, takes_no_part(node, reason)});
+    events_({wire::Severity::Info, takes_no_part(node, reason), {.node = node.hello.name}});
 }
 
 }  // namespace tessera::master

@@ -175,7 +175,8 @@ bool ViewRunner::drops_test_patterns(ViewState& view) {
     const bool may_restart = !view.passes.empty() && (!view.run.outcome || view.shows_all());
     if (!may_restart || !passes_.dispatcher.is_superseded(view.pass().view.id)) return false;
     events_({wire::Severity::Info,
-             "view " + view.name + " starts over: its film has test patterns of null nodes"});
+             "view " + view.name + " starts over: its film has test patterns of null nodes",
+             {.view = view.id}});
     passes_.end_all(view);
     view.restart_wanted = true;
     return true;
@@ -360,7 +361,7 @@ void ViewRunner::fail(ViewState& view, const std::string& problem, TimePoint now
     view.problem = problem;
     view.restart_wanted = false;
     const std::string text = "view " + view.name + " is not rendered: " + problem;
-    events_({wire::Severity::Error, text});
+    events_({wire::Severity::Error, text, {.session = view.owner.session, .view = view.id}});
     notify_owner(view, text);
     passes_.end_all(view);
 }
@@ -390,7 +391,7 @@ void ViewRunner::change_filter(ViewState& view, const FilterChange& change, Time
 // ---- notifications ----
 
 void ViewRunner::notify_owner(const ViewState& view, const std::string& text) {
-    if (view.in_group()) events_({wire::Severity::Warning, text});
+    if (view.in_group()) events_({wire::Severity::Warning, text, {.view = view.id}});
     if (const SessionRecord* owner = sessions_.find(view.owner.session))
         outbox_.control(owner->control, wire::Notice{wire::Severity::Warning, text});
 }

@@ -113,7 +113,9 @@ void SceneDistributor::take(const EncodedScene& made, NodeTable& nodes, TimePoin
 
 void SceneDistributor::resync(NodeRecord& node, const wire::Resync& request, TimePoint now) {
     ++resyncs_;
-    events_({wire::Severity::Warning, "node " + node.hello.name + " requests a snapshot: " + request.reason});
+    events_({wire::Severity::Warning,
+             "node " + node.hello.name + " requests a snapshot: " + request.reason,
+             {.node = node.hello.name}});
     send_snapshot(node, now);
 }
 
@@ -126,10 +128,11 @@ SceneDistributor::CheckResult SceneDistributor::reported(NodeRecord& node, const
     }
     ++resyncs_;
     if (++node.hash_mismatches > 1) {
-        events_({wire::Severity::Error, "node " + node.hello.name +
-                                            " disagrees with the master about the scene at version " +
-                                            std::to_string(report.version.number) +
-                                            " for the second time: the node is removed; check its build"});
+        events_({wire::Severity::Error,
+                 "node " + node.hello.name + " disagrees with the master about the scene at version " +
+                     std::to_string(report.version.number) +
+                     " for the second time: the node is removed; check its build",
+                 {.node = node.hello.name, .version = report.version}});
         return CheckResult::RemoveNode;
     }
     send_snapshot(node, now);
@@ -140,8 +143,10 @@ void SceneDistributor::refused(NodeRecord& node, const wire::SceneRefused& refus
     if (refusal.version != scene_.version()) return;
     node.refused = refusal.version;
     node.refusal = refusal.reason;
-    events_({wire::Severity::Warning, "node " + node.hello.name + " cannot build version " +
-                                          std::to_string(refusal.version.number) + ": " + refusal.reason});
+    events_({wire::Severity::Warning,
+             "node " + node.hello.name + " cannot build version " + std::to_string(refusal.version.number) +
+                 ": " + refusal.reason,
+             {.node = node.hello.name, .version = refusal.version}});
 }
 
 void SceneDistributor::repair(NodeTable& nodes, TimePoint now, Duration timeout) {

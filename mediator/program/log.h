@@ -5,15 +5,20 @@
 #include <string_view>
 #include <vector>
 
+#include "mediator/base/log_subject.h"
+
 namespace tessera::cli {
 
 struct LogSettings {
     std::string program;
-    std::string level = "info";  // one of log_levels()
-    std::string file{};          // "" = standard error
+    std::string level = "info";   // or debug, warning, error, off
+    std::string file{};           // "" = standard error
+    std::string format = "text";  // or json: an object per line
 };
 
-std::vector<std::string> log_levels();
+// --log-level, --log-file and --log-format.
+class CommandLine;
+void add_log_options(CommandLine& line, LogSettings& settings);
 
 // The log of a program; libraries report by return value or callback. Thread-safe.
 class Log {
@@ -22,10 +27,10 @@ class Log {
     ~Log();
     Log(Log&&) noexcept;
 
-    void debug(std::string_view text) const;
-    void info(std::string_view text) const;
-    void warning(std::string_view text) const;
-    void error(std::string_view text) const;
+    void debug(std::string_view text, const LogSubject& about = {}) const;
+    void info(std::string_view text, const LogSubject& about = {}) const;
+    void warning(std::string_view text, const LogSubject& about = {}) const;
+    void error(std::string_view text, const LogSubject& about = {}) const;
 
   private:
     struct Implementation;

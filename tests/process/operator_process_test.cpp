@@ -3,8 +3,10 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "tests/process/real_cluster.h"
 
@@ -127,6 +129,43 @@ TEST(Operators, WhatDoesNotFitIntoTheMemoryOfTheMasterIsRefused) {
     EXPECT_NE(large.err().find("--memory"), std::string::npos) << large.err();
     const json small = cluster.render("small", scene_file("still.glb"), {"--size", "64x64", "--spp", "1"});
     EXPECT_EQ(small["spp"], 1);
+}
+
+std::vector<json> lines_of(const std::string& log) {
+    std::vector<json> lines;
+    std::istringstream in(log);
+    for (std::string line; std::getline(in, line);) {
+        lines.push_back(json::parse(line, nullptr, false));
+        EXPECT_TRUE(lines.back().is_object()) << line;
+    }
+    return lines;
+}
+
+TEST(Operators, AUnitCanBeFollowedThroughTheLogs) {
+    RealCluster cluster({"--log-level", "debug", "--log-format", "json"}, RealCluster::Session::None);
+    ChildProcess node =
+        cluster.start_node("a", {"--log-level", "debug", "--log-format", "json", "--backend", "null"});
+    (void)cluster.render("frame", scene_file("still.glb"), {"--size", "64x48", "--spp", "4"});
+    node.signal(SIGTERM);
+    EXPECT_EQ(node.wait(1min).value_or(-1), 0) << node.err();
+    const std::vector<json> master = lines_of(cluster.master().err()), far = lines_of(node.err());
+    const auto dealt = std::ranges::find_if(
+        master, [](const json& line) { return line.value("text", "").starts_with("unit is dealt"); });
+    ASSERT_NE(dealt, master.end()) << cluster.master().err();
+    const std::uint64_t unit = dealt->at("unit");
+    const auto says = [&](const std::vector<json>& lines, const std::string& text) {
+        return std::ranges::any_of(lines, [&](const json& line) {
+            return line.value("unit", std::uint64_t{0}) == unit && line.value("text", "") == text;
+        });
+    };
+    EXPECT_EQ(dealt->at("node"), "a");
+    EXPECT_EQ(dealt->at("program"), "tessera-master");
+    EXPECT_EQ(dealt->at("level"), "debug");
+    EXPECT_GT(dealt->at("view").get<int>(), 0);
+    EXPECT_GT(dealt->at("version").at("number").get<int>(), 0);
+    EXPECT_TRUE(says(master, "unit ends: merged")) << cluster.master().err();
+    for (const char* text : {"unit is being rendered", "unit is rendered", "film of the unit is sent"})
+        EXPECT_TRUE(says(far, text)) << text << "\n" << node.err();
 }
 
 std::string crash_report(const std::filesystem::path& folder, const ChildProcess& process,

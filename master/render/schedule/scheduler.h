@@ -34,6 +34,8 @@ class Scheduler {
     Scheduler(const PlanSettings& plan, ViewId view, std::uint64_t revision, Version version,
               UnitId first_unit, std::optional<TimePoint> deadline);
 
+    void observe_ends(UnitLedger::Observer observer) { ledger_.observe(std::move(observer)); }
+
     // `nodes`: all that could take units of this pass, also those without a free slot.
     std::vector<Assignment> assign(std::span<const NodeCapacity> nodes, const Balancer& balancer,
                                    TimePoint now);

@@ -158,6 +158,7 @@ void UnitLedger::close(std::map<UnitId, Unit>::iterator entry, NodeId node, Fate
         by_node_[node].erase(id);
         --in_flight_;
         unit.past_holders.push_back(node);
+        if (observer_) observer_(unit.unit, node, fate);
     }
     if (!unit.holders.empty()) return;
     std::erase(open_of_tile_[unit.tile], id);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -9,6 +10,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "master/render/schedule/block_set.h"
@@ -33,6 +35,9 @@ enum class Fate : std::uint8_t {
     Refused,    // the node could not render it, or its film was not admitted
     Lost,       // the node is gone, or its film never arrived
 };
+constexpr auto enumerators(Fate) {
+    return std::to_array<std::string_view>({"merged", "duplicate", "cancelled", "refused", "lost"});
+}
 
 // What the header of a film message says.
 struct ArrivingFilm {
@@ -85,8 +90,13 @@ class UnitLedger {
         bool is_covered = false;  // all its samples have arrived; the remaining holders are being stopped
     };
 
+    using Observer = std::function<void(const view::WorkUnit&, NodeId, Fate)>;
+
     // Units have ids from `first_unit` on, in the order of deal().
     UnitLedger(std::vector<Rect> tiles, UnitId first_unit);
+
+    // Called at the end of each node's part in a unit.
+    void observe(Observer observer) { observer_ = std::move(observer); }
 
     const std::vector<Rect>& tiles() const { return tiles_; }
     UnitId next_unit() const { return UnitId{first_unit_.value + dealt_.size()}; }
@@ -170,6 +180,7 @@ class UnitLedger {
     std::uint64_t arrived_samples_ = 0, in_flight_ = 0;
     std::uint32_t tiles_without_samples_, uncovered_ = 0;
     session::UnitCounts counts_;
+    Observer observer_;
 };
 
 }  // namespace tessera::master

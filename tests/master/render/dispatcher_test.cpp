@@ -38,8 +38,10 @@ struct DispatcherTest : testing::Test {
     Outbox outbox{channel};
     NodeTable nodes{{}, {}};
     std::vector<std::string> events;
-    Dispatcher dispatcher{std::chrono::seconds(5), clock, nodes, outbox,
-                          [this](const Event& event) { events.push_back(event.text); }};
+    std::vector<Event> details;
+    Dispatcher dispatcher{std::chrono::seconds(5), clock, nodes, outbox, [this](const Event& event) {
+                              event.is_detail ? details.push_back(event) : events.push_back(event.text);
+                          }};
 
     NodeRecord& add_node(std::uint64_t number, std::uint32_t slots) {
         wire::Hello hello{.name = "node-" + std::to_string(number), .channels = {frame::Channel::Color}};
@@ -113,6 +115,32 @@ TEST_F(DispatcherTest, ContradictingFilmIsReportedWithAReplayCommand) {
     ASSERT_EQ(events.size(), 1u);
     EXPECT_NE(events[0].find("second: node-2"), std::string::npos) << events[0];
     EXPECT_NE(events[0].find("tessera probe SCENE --pixel 0,0 --sample 0"), std::string::npos) << events[0];
+}
+
+TEST_F(DispatcherTest, TheLogFollowsTheLifeOfAUnit) {
+    add_node(1, 2);
+    begin(view(8, 16));
+    deal(ViewId{8});
+    const auto work = channel.all<wire::Work>();
+    ASSERT_EQ(work.size(), 2u);
+    (void)dispatcher.take(report(work[0].unit, FrameAssembler::Outcome::Merged, 1), now);
+    dispatcher.released(*nodes.find(NodeId{1}), {work[1].unit.id, wire::ReleaseReason::OtherVersion, ""},
+                        now);
+    const auto life_of = [&](UnitId unit) {
+        std::vector<std::string> life;
+        for (const Event& detail : details) {
+            if (detail.about.unit != unit) continue;
+            life.push_back(detail.text.substr(0, detail.text.find(" (")));
+            EXPECT_EQ(detail.about.node, "node-1");
+            EXPECT_EQ(detail.about.view, ViewId{8});
+            EXPECT_EQ(detail.about.version, Scene);
+        }
+        return life;
+    };
+    const auto dealt = [](UnitId unit) { return "unit is dealt: unit " + std::to_string(unit.value); };
+    const UnitId first = work[0].unit.id, second = work[1].unit.id;
+    EXPECT_EQ(life_of(first), (std::vector<std::string>{dealt(first), "unit ends: merged"}));
+    EXPECT_EQ(life_of(second), (std::vector<std::string>{dealt(second), "unit ends: refused"}));
 }
 
 TEST_F(DispatcherTest, PassesShareTheNodesSlots) {

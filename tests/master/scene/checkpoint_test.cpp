@@ -235,7 +235,8 @@ TEST_F(CheckpointTest, DISABLED_OneOfMoreThan2GiBIsReportedAndLosesNothing) {
     const std::uint64_t number = master->journal->start_segment();
     {
         CheckpointWriter writer(folder);
-        writer.start({number, {std::string((std::size_t{2} << 30) + 1000, 'x'), {}}, master->authority.save(), {}});
+        writer.start(
+            {number, {std::string((std::size_t{2} << 30) + 1000, 'x'), {}}, master->authority.save(), {}});
         writer.wait();
         const auto result = writer.take_result();
         ASSERT_TRUE(result);
