@@ -117,6 +117,11 @@ std::unique_ptr<draco::Mesh> decode(std::span<const unsigned char> bytes, std::u
     if (!status.ok()) reject_encoded("cannot be decoded (" + status.error_msg_string() + ")");
     const std::uint64_t most = std::min(most_faces, MaxDracoFaces);
     if (mesh->num_faces() > most || mesh->num_points() > 3 * most) reject_encoded("has too many elements");
+    for (draco::FaceIndex face(0); face < mesh->num_faces(); ++face) {
+        for (const draco::PointIndex point : mesh->face(face))
+            if (point >= mesh->num_points())
+                reject_encoded("has a triangle with a vertex that does not exist");
+    }
     return mesh;
 }
 

@@ -78,8 +78,9 @@ Expected<Size> checked_size(std::span<const unsigned char> bytes) {
 }
 
 tl::unexpected<Error> damaged() {
+    const char* reason = stbi_failure_reason();  // null for some of its failures
     return failure(ErrorCode::InvalidInput,
-                   "the image is damaged (" + std::string(stbi_failure_reason()) + ")");
+                   "the image is damaged" + (reason != nullptr ? " (" + std::string(reason) + ")" : ""));
 }
 
 // Not by stb_image 2.27, which never returns from a truncated run.

@@ -59,13 +59,13 @@ void read_frame(std::span<const unsigned char> segment, unsigned char marker, Jp
     }
 }
 
-// The tables of a segment, as stb_image goes through them: one may extend beyond the segment, which is an error only
-// afterwards.
+// The tables of a segment, as stb_image goes through them: one may extend beyond the segment or the file, which is an error
+// only afterwards.
 void read_tables(std::span<const unsigned char> rest, std::size_t length, JpegFrame& frame) {
     constexpr std::size_t Lengths = 16;
-    while (length > 0 && rest.size() > Lengths) {
+    while (length > 0 && !rest.empty()) {
         std::size_t codes = 0;
-        for (std::size_t i = 1; i <= Lengths; ++i) codes += rest[i];
+        for (const unsigned char count : rest.subspan(1, std::min(Lengths, rest.size() - 1))) codes += count;
         frame.most_codes = std::max<std::uint64_t>(frame.most_codes, codes);
         const std::size_t size = 1 + Lengths + codes;
         length -= std::min(length, size);
@@ -94,10 +94,11 @@ JpegFrame read_frame(std::span<const unsigned char> bytes) {
         if (has_length(marker)) {
             if (bytes.size() - at < 2) break;
             const std::size_t length = bytes[at] * 256u + bytes[at + 1];
-            if (length < 2 || length > bytes.size() - at) break;
+            if (length < 2) break;
+            if (marker == HuffmanTables) read_tables(bytes.subspan(at + 2), length - 2, frame);
+            if (length > bytes.size() - at) break;
             if (starts_frame(marker) && frame.width == 0)  // stb_image uses the first one
                 read_frame(bytes.subspan(at + 2, length - 2), marker, frame);
-            if (marker == HuffmanTables) read_tables(bytes.subspan(at + 2), length - 2, frame);
             if (marker == StartOfScan) {
                 ++frame.scans;
                 within = Within::Scan;

@@ -1,11 +1,13 @@
 #include "client/import/post_process.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
 
 #include "client/import/default_environment.h"
 #include "client/import/environment.h"
 #include "client/import/framing.h"
 #include "client/import/scene_stats.h"
+#include "mediator/scene/field_notes.h"
 
 namespace tessera::import {
 namespace {
@@ -22,17 +24,26 @@ std::string causes(const std::vector<std::string>& notices) {
 }  // namespace
 
 void add_framing_camera(SceneBuilder& builder, const Bounds& bounds) {
+    // So that the camera is not beyond what a scene may have.
+    constexpr double MaxVisible = scene::MaxCoordinate / 1000.0;
+    Bounds visible = bounds;
+    if (!bounds.empty()) {
+        visible = {glm::clamp(bounds.lower, -MaxVisible, MaxVisible),
+                   glm::clamp(bounds.upper, -MaxVisible, MaxVisible)};
+    }
+    const bool is_whole = visible.lower == bounds.lower && visible.upper == bounds.upper;
     scene::Camera camera;
     camera.name = "framing";
     scene::Transform transform;
     transform.name = "framing camera";
-    transform.matrix = framing_pose(bounds, camera.vertical_fov, builder.options().aspect_ratio);
+    transform.matrix = framing_pose(visible, camera.vertical_fov, builder.options().aspect_ratio);
     const ObjectId id = builder.add(std::move(camera));
     const auto& added = builder.get<scene::Camera>(id);
     transform.children = {id};
     builder.result().cameras.push_back({added.name, transform.matrix, added});
     builder.result().root.children.push_back(builder.add(std::move(transform)));
-    builder.notice("no camera: added one that frames the scene");
+    builder.notice(is_whole ? "no camera: added one that frames the scene"
+                            : "no camera: added one that frames what is within 1e12 m of the origin");
 }
 
 void post_process(SceneBuilder& builder, scene::Background of_file) {

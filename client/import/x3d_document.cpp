@@ -13,11 +13,12 @@ namespace {
 std::string text_of(const std::filesystem::path& file) {
     const auto bytes = read_whole_file(file);
     if (!bytes) throw bytes.error();
+    std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     // UTF-16 and UTF-32 have zero bytes in the first characters of "<?xml".
-    if (std::memchr(bytes->data(), 0, std::min<std::size_t>(bytes->size(), 4)) != nullptr) {
+    if (std::string_view(text).substr(0, 4).find('\0') != std::string_view::npos) {
         throw Error(ErrorCode::InvalidInput, "it is not text in UTF-8: save it as UTF-8");
     }
-    return {reinterpret_cast<const char*>(bytes->data()), bytes->size()};
+    return text;
 }
 
 // Metadata does not affect the picture.

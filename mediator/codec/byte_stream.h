@@ -42,6 +42,7 @@ class ByteReader {
     template <class T>
     void fill(std::span<T> values) {
         if (bytes_.size() < values.size_bytes()) fail("it ends too early");
+        if (values.empty()) return;
         std::memcpy(values.data(), bytes_.data(), values.size_bytes());
         bytes_ = bytes_.subspan(values.size_bytes());
     }
