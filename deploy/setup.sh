@@ -5,7 +5,7 @@
 # (default: all that its options enable). A second run does nothing if nothing has changed.
 #
 # Presets: release (unity build: fastest full build), dev (each source on its own: fast incremental builds), bench (release with
-# the benchmarks), debug, asan, tsan; see CMakePresets.json.
+# the benchmarks), debug, asan, tsan, fuzz; see CMakePresets.json.
 #
 # TESSERA_BUILD_JOBS: number of parallel compilers (default: number of cores).
 # TESSERA_PACKAGES: files that list packages (default: deploy/packages.txt).

@@ -138,6 +138,8 @@ ProcessLimits limits_of_reader(const std::filesystem::path& file) {
             .wall_time = std::chrono::seconds(480 + 8 * mebibytes)};
 }
 
+}  // namespace
+
 void read_with_assimp(const std::filesystem::path& file, SceneBuilder& builder) {
     Assimp::Importer importer;
     importer.SetIOHandler(new AssimpFiles(file));  // owned by the importer
@@ -155,8 +157,6 @@ void read_with_assimp(const std::filesystem::path& file, SceneBuilder& builder) 
     const LocalFolder folder(file);
     AssimpScene(*scene, folder, builder).build();
 }
-
-}  // namespace
 
 void import_with_assimp(const std::filesystem::path& file, SceneBuilder& builder) {
     run_limited(

@@ -16,4 +16,7 @@ bool is_assimp_extension(std::string_view extension);  // lower case, including 
 // files inside the scene's folder. Throws Error.
 void import_with_assimp(const std::filesystem::path& file, SceneBuilder& builder);
 
+// What that child does: for fuzzers, which have to see where a crash is.
+void read_with_assimp(const std::filesystem::path& file, SceneBuilder& builder);
+
 }  // namespace tessera::import

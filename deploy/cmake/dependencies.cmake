@@ -43,6 +43,7 @@ if(TESSERA_BENCH)
   find_package(benchmark REQUIRED)
 endif()
 if(TESSERA_CI)
+  find_program(TESSERA_CLANG clang++-16 REQUIRED)  # tests/fuzz/decoders
   find_program(TESSERA_CLANG_TIDY clang-tidy-16 REQUIRED)
   find_program(TESSERA_HELP2MAN help2man REQUIRED)
   find_program(TESSERA_DOXYGEN doxygen REQUIRED)

@@ -2,7 +2,7 @@
 add_library(tessera_flags INTERFACE)
 target_compile_options(tessera_flags INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
   -Wno-missing-field-initializers  # designated initialisers only name non-default members
-  -Wno-restrict)                   # false positives of GCC 12 in inlined std::string (GCC bug 105651)
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)  # false positives of GCC 12 in inlined std::string (GCC bug 105651)
 
 # Results must be bit-identical for any compiling host: x86-64-v3, no FMA contraction, no fast-math.
 target_compile_options(tessera_flags INTERFACE -march=x86-64-v3 -ffp-contract=off)
@@ -10,6 +10,9 @@ target_compile_options(tessera_flags INTERFACE -march=x86-64-v3 -ffp-contract=of
 if(TESSERA_SANITIZE)
   target_compile_options(tessera_flags INTERFACE -fsanitize=${TESSERA_SANITIZE} -fno-omit-frame-pointer)
   target_link_options(tessera_flags INTERFACE -fsanitize=${TESSERA_SANITIZE})
+endif()
+if(TESSERA_FUZZ)
+  target_compile_options(tessera_flags INTERFACE -fno-sanitize-recover=all)  # undefined behaviour is a finding
 endif()
 
 find_program(TESSERA_MOLD mold)
