@@ -114,6 +114,18 @@ SceneFile draco_file(const Compressed& square, std::uint32_t position_id,
     return file;
 }
 
+TEST(Draco, ATriangleWithAVertexThatDoesNotExistIsRefused) {
+    Compressed square = compressed_square(draco::MESH_SEQUENTIAL_ENCODING);
+    constexpr std::size_t LastIndex =
+        19;  // header of 11 bytes, counts of faces and points, a method, six indices
+    ASSERT_LT(square.bytes[LastIndex], 4);
+    square.bytes[LastIndex] = 100;
+    const TestFolder folder;
+    const ImportedScene scene = loaded(folder.write("scene.glb", draco_file(square, square.position).glb()));
+    EXPECT_EQ(scene.counts.placeholders, 1u);
+    EXPECT_THAT(scene.notices, testing::Contains(testing::HasSubstr("vertex that does not exist")));
+}
+
 TEST(Draco, ACompressedMeshIsDecoded) {
     const Compressed square = compressed_square();
     const TestFolder folder;

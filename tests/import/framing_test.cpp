@@ -1,6 +1,8 @@
 // Cameras that frame everything.
 #include "client/import/framing.h"
 
+#include <gmock/gmock.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -94,6 +96,19 @@ TEST(Framing, ComesWithAFileThatHasNoCamera) {
                         aspect);
         EXPECT_NEAR(0.5 * (seen.upper.x - seen.lower.x), 1.0 - 2.0 * FramingMargin, 1e-6) << aspect;
     }
+}
+
+TEST(Framing, OfAHugeSceneStaysWithinWhatASceneMayHave) {
+    SceneFile file;
+    const int at = file.positions({{0, 0, 0}, {9e14f, 0, 0}, {0, 9e14f, 0}});
+    file.add("meshes", R"({"primitives":[{"attributes":{"POSITION":)" + std::to_string(at) + "}}]}");
+    file.add("nodes", R"({"mesh":0})");
+    file.add("scenes", R"({"nodes":[0]})");
+    const TestFolder folder;
+    const ImportedScene scene = loaded(folder.write("scene.glb", file.glb()));
+    expect_consistent(scene);
+    ASSERT_EQ(scene.cameras.size(), 1u);
+    EXPECT_THAT(scene.notices, testing::Contains(testing::HasSubstr("within 1e12 m")));
 }
 
 }  // namespace
