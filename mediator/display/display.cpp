@@ -1,5 +1,8 @@
 #include "mediator/display/display.h"
 
+#include <cmath>
+#include <limits>
+
 namespace tessera::display {
 
 bool takes_linear_light(const Output& output) {
@@ -17,7 +20,10 @@ const char* Head::malformed() const {
 
 void Head::turn(const glm::dvec4& wxyz) {
     const double length = glm::length(wxyz);
-    const glm::dvec4 unit = length > 0.5 && length < 2.0 ? wxyz / length : wxyz;
+    // What has been normalized is left as it is, so that it has the same bits after it was sent on.
+    constexpr double Rounding = 4.0 * std::numeric_limits<double>::epsilon();
+    const bool is_unit = std::abs(length - 1.0) <= Rounding;
+    const glm::dvec4 unit = !is_unit && length > 0.5 && length < 2.0 ? wxyz / length : wxyz;
     orientation = glm::dquat(unit.x, unit.y, unit.z, unit.w);
 }
 

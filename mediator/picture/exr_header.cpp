@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "mediator/base/error.h"
@@ -48,6 +49,7 @@ class Reader {
         file_.seekg(bytes, std::ios::cur);
     }
 
+    void seek(std::int64_t position) { file_.seekg(position); }
     std::int64_t position() { return static_cast<std::int64_t>(file_.tellg()); }
     std::int64_t size() const { return size_; }
 
@@ -134,6 +136,51 @@ std::vector<ExrChannel> read_channels(Reader& reader, std::int32_t size) {
     return channels;
 }
 
+// OpenEXR reads as much as the type takes, whatever size the header states; then it would take other bytes than we do for
+// the next attribute, and allocate what these claim.
+void check_attribute(Reader& reader, const std::string& type, std::int32_t size) {
+    struct Fixed {
+        std::string_view type;
+        std::int32_t size;
+    };
+    constexpr std::array Types{Fixed{"box2f", 16},
+                               Fixed{"box2i", 16},
+                               Fixed{"chromaticities", 32},
+                               Fixed{"compression", 1},
+                               Fixed{"deepImageState", 1},
+                               Fixed{"double", 8},
+                               Fixed{"envmap", 1},
+                               Fixed{"float", 4},
+                               Fixed{"int", 4},
+                               Fixed{"keycode", 28},
+                               Fixed{"lineOrder", 1},
+                               Fixed{"m33d", 72},
+                               Fixed{"m33f", 36},
+                               Fixed{"m44d", 128},
+                               Fixed{"m44f", 64},
+                               Fixed{"rational", 8},
+                               Fixed{"tiledesc", 9},
+                               Fixed{"timecode", 8},
+                               Fixed{"v2d", 16},
+                               Fixed{"v2f", 8},
+                               Fixed{"v2i", 8},
+                               Fixed{"v3d", 24},
+                               Fixed{"v3f", 12},
+                               Fixed{"v3i", 12}};
+    const std::int64_t begin = reader.position();
+    if (type == "chlist") {
+        (void)read_channels(reader, size);
+    } else if (type == "preview") {
+        const std::int64_t width = reader.value<std::uint32_t>(), height = reader.value<std::uint32_t>();
+        if (width > size || height > size || 8 + 4 * width * height != size)
+            throw damaged("its preview has another size than its header says");
+    } else if (const auto fixed = std::ranges::find(Types, type, &Fixed::type);
+               fixed != Types.end() && fixed->size != size) {
+        throw damaged("its header has an attribute of the type " + type + " and of a wrong size");
+    }
+    reader.seek(begin);
+}
+
 void check_storage(const Storage& storage, const std::vector<ExrChannel>& channels, const Rect& window,
                    std::int64_t file_size) {
     if (storage.compression >= Compressions.size()) throw damaged("its compression is unknown");
@@ -171,8 +218,9 @@ Rect checked_exr_window(const std::string& path, const PictureLimits& limits) {
     std::optional<Rect> window;
     std::vector<ExrChannel> channels;
     for (std::string name = reader.text(); !name.empty(); name = reader.text()) {
-        reader.text();  // its type
+        const std::string type = reader.text();
         const auto size = reader.value<std::int32_t>();
+        check_attribute(reader, type, size);
         if (name == "dataWindow" && size == sizeof(std::array<std::int32_t, 4>)) {
             window = checked_window(reader.value<std::array<std::int32_t, 4>>(), limits);
         } else if (name == "tiles" && size >= 8) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <new>
 
 #include "client/export/export.h"
 #include "client/import/assimp_import.h"
@@ -147,7 +148,11 @@ void with_assimp(const char* name, Bytes bytes) {
     const import::ImportOptions options;
     import::SceneBuilder builder(options);
     accepts([&] {
-        import::read_with_assimp(file_of(name, bytes), builder);
+        try {
+            import::read_with_assimp(file_of(name, bytes), builder);
+        } catch (const std::bad_alloc&) {
+            return;  // assimp believes what a file claims: the child process has a limit of memory
+        }
         import::post_process(builder);
         require_valid(builder.result());
     });
