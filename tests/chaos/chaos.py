@@ -42,7 +42,7 @@ class Run:
         self.seed, self.seconds, self.world, self.tessera, self.say = seed, seconds, world, tessera, say
         self.renders, self.editor = Renders(world, expected), None
         self.job = Job(world, expected)
-        self.joined = self.fault_count = 0
+        self.fault_count = 0
 
     def go(self):
         self.renders.start()
@@ -93,28 +93,8 @@ class Run:
 
     def _begin(self, fault):
         """Returns what ends it, or None."""
-        if fault.what == "join":
-            return self._join()
-        if fault.target == "render" and fault.what in ("kill", "stop"):
-            return self._disturb_render(fault)
-        if fault.what in ("hold", "forget", "cut"):
-            line = self.world.lines[fault.target]
-            getattr(line, fault.what)()
-            return line.go_on if fault.what == "hold" else None
-        process = self.world.master if fault.target == "master" else self.world.nodes[fault.target]
-        if fault.what == "stop":
-            process.stop()
-            return process.go_on
-        process.end(signal.SIGKILL if fault.what == "kill" else signal.SIGTERM)
-        return process.start
-
-    def _join(self):
-        self.joined += 1
-        name = f"guest-{self.joined}"
-        self.world.add_node(name)
-        return lambda: self.world.nodes[name].end(signal.SIGTERM)
-
-    def _disturb_render(self, fault):
+        if fault.target != "render" or fault.what not in ("kill", "stop"):
+            return self.world.begin(fault)
         if fault.what == "kill":
             return self.renders.kill()
         self.renders.stop(signal.SIGSTOP)

@@ -3,7 +3,7 @@
 import dataclasses
 import random
 
-MEAN_GAP = 0.5  # s between the beginnings of two faults
+MEAN_GAP = 0.5  # s
 
 
 @dataclasses.dataclass(frozen=True)
@@ -62,13 +62,14 @@ def draw_links(seed, names):
     return {name: Link(10 ** draw.uniform(7.5, 9), 10 ** draw.uniform(-4, -1.5), 10 ** draw.uniform(-4, -2)) for name in names}
 
 
-def draw_faults(seed, seconds, nodes, client):
-    """In the order of time. client: "render" or "editor", which is there. Two faults of one process or line may overlap."""
+def draw_faults(seed, seconds, nodes, client, mean_gap=MEAN_GAP):
+    """In the order of time. client: "render" or "editor", which is there; mean_gap: s between the beginnings of two faults, which
+    may overlap, also those of one process or line."""
     draw = random.Random(f"faults of {client} {seed}")
     kinds = {fault: kind for fault, kind in KINDS.items() if fault[1] in ("node", "master", client)}
     faults, at = [], 0.0
     while True:
-        at += draw.expovariate(1 / MEAN_GAP)
+        at += draw.expovariate(1 / mean_gap)
         if at > seconds:
             return faults
         (what, target), kind = draw.choices(list(kinds.items()), [kind.weight for kind in kinds.values()])[0]

@@ -18,6 +18,7 @@ JOB = ["--size", "100x60", "--spp", "150", "--seed", "9", "--exposure", "0"]
 EDITED = 8  # transforms whose places change
 EDIT_SECONDS = 0.05  # between two edits
 CREATE_EVERY = 20  # edits
+MAX_GROUPS = 5  # of what was created; then the oldest is removed
 
 
 class Expected:
@@ -103,12 +104,14 @@ class Job:
 class Editor(threading.Thread):
     """Edits a scene, and remembers what the master has acknowledged."""
 
-    def __init__(self, tessera, world):
+    def __init__(self, tessera, world, edit_seconds=EDIT_SECONDS):
+        """edit_seconds: between two edits."""
         super().__init__(daemon=True)
-        self._tessera, self._end = tessera, threading.Event()
+        self._tessera, self._end, self._edit_seconds = tessera, threading.Event(), edit_seconds
+        self.latencies = []  # s until the master has acknowledged each edit
         self.session = tessera.connect(world.endpoint("editor"), keys=world.keys, name="ann", lost_limit=60.0)
         self.scene = self.session.join("chaos")
-        self.places, self.names, self.edits, self.error = {}, set(), 0, None
+        self.places, self.groups, self.edits, self.error = {}, {}, 0, None
         self._create_scene()
         self.pose = tessera.look_at((0, 0, 6), (0, 0, 0))
         self._view = self.session.open_view(self.pose, size=(48, 32), spp=16, picture="planes")
@@ -132,8 +135,10 @@ class Editor(threading.Thread):
 
     def run(self):
         try:
-            while not self._end.wait(EDIT_SECONDS):
+            while not self._end.wait(self._edit_seconds):
+                begin = time.monotonic()
                 self._edit()
+                self.latencies.append(time.monotonic() - begin)
         except Exception as error:  # reported by finish()
             self.error = error
 
@@ -141,9 +146,14 @@ class Editor(threading.Thread):
         number = self.edits + 1
         if number % CREATE_EVERY == 0:
             name = f"group {number}"
+            oldest = next(iter(self.groups)) if len(self.groups) == MAX_GROUPS else None
             with self.session.transaction() as edit:
-                edit.create("transform", name=name)
-            self.names.add(name)
+                group = edit.create("transform", name=name)
+                if oldest is not None:
+                    edit.detach(oldest)
+                    edit.remove(oldest)
+            self.groups[group.id] = name
+            self.groups.pop(oldest, None)
         else:
             place, matrix = list(self.places)[number % EDITED], self._tessera.translation(0.01 * number % 2, 0.0, -0.1 * number % 3)
             with self.session.transaction() as edit:
@@ -167,9 +177,9 @@ class Editor(threading.Thread):
             seen = tuple(transforms[place].matrix)
             if seen != matrix:
                 raise ChaosError(f"an acknowledged edit is lost: object {place} has the matrix {seen} instead of {matrix}")
-        missing = self.names - {each.name for each in transforms.values()}
-        if missing:
-            raise ChaosError(f"acknowledged objects are lost: {sorted(missing)}")
+        groups = {each.id: each.name for each in transforms.values() if each.name.startswith("group")}
+        if groups != self.groups:
+            raise ChaosError(f"the scene has the groups {groups}, but acknowledged are {self.groups}")
 
 
 def wait_until(done, seconds, what):

@@ -75,7 +75,7 @@ class World:
         self.port = free_port()
         self._stack = contextlib.ExitStack()
         self.master = Process(self._start_master)
-        self.nodes, self.lines, self._ports = {}, {}, {}
+        self.nodes, self.lines, self._ports, self._joined = {}, {}, {}, 0
 
     def __enter__(self):
         try:
@@ -109,6 +109,31 @@ class World:
 
         self.nodes[name] = Process(start)
         self.nodes[name].start()
+
+    def begin(self, fault):
+        """Returns what ends the fault, or None."""
+        if fault.what == "join":
+            return self._join()
+        if fault.what in ("hold", "forget", "cut"):
+            line = self.lines[fault.target]
+            getattr(line, fault.what)()
+            return line.go_on if fault.what == "hold" else None
+        process = self.master if fault.target == "master" else self.nodes[fault.target]
+        if fault.what == "stop":
+            process.stop()
+            return process.go_on
+        process.end(signal.SIGKILL if fault.what == "kill" else signal.SIGTERM)
+        return process.start
+
+    def _join(self):
+        self._joined += 1
+        name = f"guest-{self._joined}"
+        self.add_node(name)
+
+        def leave():
+            self.nodes.pop(name).end(signal.SIGTERM)
+
+        return leave
 
     def check(self):
         for process in (self.master, *self.nodes.values()):
