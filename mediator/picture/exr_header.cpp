@@ -172,7 +172,7 @@ void check_attribute(Reader& reader, const std::string& type, std::int32_t size)
         (void)read_channels(reader, size);
     } else if (type == "preview") {
         const std::int64_t width = reader.value<std::uint32_t>(), height = reader.value<std::uint32_t>();
-        if (width > size || height > size || 8 + 4 * width * height != size)
+        if (width > size || height > size || width * height != (size - 8) / 4 || size % 4 != 0)
             throw damaged("its preview has another size than its header says");
     } else if (const auto fixed = std::ranges::find(Types, type, &Fixed::type);
                fixed != Types.end() && fixed->size != size) {

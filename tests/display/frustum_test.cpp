@@ -133,6 +133,20 @@ TEST(Frustum, PointsOnTheWallDoNotMoveWithTheHead) {
     }
 }
 
+TEST(Head, AnOrientationThatIsSentOnKeepsItsBits) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> component(-1.0, 1.0);
+    for (int i = 0; i < 10000; ++i) {
+        glm::dvec4 wxyz(component(random), component(random), component(random), component(random));
+        wxyz *= (0.6 + 0.3 * i / 10000) / glm::length(wxyz);
+        Head first, second;
+        first.turn(wxyz);
+        second.turn(first.wxyz());
+        ASSERT_EQ(first, second) << i;
+        ASSERT_NEAR(glm::length(first.wxyz()), 1.0, 1e-15);
+    }
+}
+
 TEST(Frustum, PointsAtZeroParallaxCoincideForBothEyes) {
     const ProjectionPlane plane = projection_plane(wall({-1, -1, -2}, {1, -1, -2}, {-1, 1, -2}));
     const Head head{.position = {0.3, 0.2, 0.0}};

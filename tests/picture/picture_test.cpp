@@ -105,6 +105,35 @@ TEST_F(PictureTest, DamagedExrIsAnErrorAndNeverACrash) {
     EXPECT_THROW(read_exr(file("missing.exr")), Error);
 }
 
+// OpenEXR reads as much as the type takes, and then other attributes than the header has.
+TEST_F(PictureTest, ExrAttributesHaveTheSizeOfTheirType) {
+    write_exr(file("a.exr"), 5, 3, {0, 0, 5, 3}, {{"", {"R", "G", "B"}, noise(5, 3, 1)}}, {});
+    const std::string good = bytes_of(file("a.exr"));
+    const auto with_size = [&](const std::string& name_and_type, char size) {
+        std::string bad = good;
+        const std::size_t at = bad.find(name_and_type);
+        EXPECT_NE(at, bad.npos) << name_and_type;
+        bad[at + name_and_type.size()] = size;
+        return bad;
+    };
+    using namespace std::string_literals;
+    const std::string preview = "preview\0preview\0\x0c\0\0\0\xff\xff\0\0\xff\xff\0\0abcd"s;
+    const std::string bad[] = {with_size("screenWindowWidth\0float\0"s, 8),
+                               with_size("lineOrder\0lineOrder\0"s, 4), with_size("channels\0chlist\0"s, 30),
+                               good.substr(0, 8) + preview + good.substr(8)};
+    for (const std::string& bytes : bad) {
+        put(file("b.exr"), bytes);
+        try {
+            (void)read_exr(file("b.exr"));
+            ADD_FAILURE() << "it is read";
+        } catch (const Error& error) {
+            const std::string text = error.what();
+            EXPECT_TRUE(text.find("wrong size") != text.npos || text.find("another size") != text.npos)
+                << text;
+        }
+    }
+}
+
 TEST_F(PictureTest, DamagedHdrIsAnError) {
     const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
     put(file("a.hdr"), head + "-Y 1 +X 2\n" + std::string("\x80\x80\x80\x81\x40\x40\x40\x81", 8));
