@@ -28,7 +28,8 @@ from faults import draw_faults, draw_links
 from work import Editor, Expected, Job, Renders, wait_until
 from world import ChaosError, World
 
-from cluster import BenchError, Programs  # of the bench on the wire
+from cluster import BenchError, Programs  # of the bench on the wire, like the next one
+from edits import load_package
 
 NODES = ["node-1", "node-2", "node-3"]
 PATIENCE = 120  # s until a calm cluster has finished everything
@@ -135,12 +136,6 @@ class Run:
             raise ChaosError("an honest node was put into quarantine: " + next(line for line in logs.split("\n") if "quarantine" in line))
 
 
-def load_package(folder):
-    sys.path.insert(0, str(folder))
-    import tessera
-    return tessera
-
-
 def seeds_of(text):
     first, _, last = text.partition("-")
     return range(int(first), int(last or first) + 1)
@@ -161,8 +156,14 @@ def run(seed, options, tessera, expected, programs):
           f"{schedule.editor.edits} edits, {time.monotonic() - began:.1f} s", flush=True)
 
 
+def wrong_use(text):
+    print(f"{pathlib.Path(sys.argv[0]).name}: {text}; see --help", file=sys.stderr)
+    sys.exit(64)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.error = wrong_use
     parser.add_argument("programs", type=pathlib.Path, help="bin folder of a build")
     parser.add_argument("python", type=pathlib.Path, help="python folder of a build")
     parser.add_argument("--seeds", type=seeds_of, default=range(1, 11), help="one seed, or the first and the last: 1-10")
@@ -171,10 +172,13 @@ def main():
     parser.add_argument("--keep", type=pathlib.Path, help="keep the logs of a failed schedule in this folder")
     parser.add_argument("--verbose", action="store_true", help="print the faults")
     options = parser.parse_args()
-    tessera = load_package(options.python)
     failed = []
-    with Programs(options.programs) as programs:
-        expected = Expected(programs, options.backend)
+    try:
+        tessera = load_package(options.python)
+        with Programs(options.programs) as programs:
+            expected = Expected(programs, options.backend)
+    except BenchError as error:
+        wrong_use(str(error))
     for seed in options.seeds:
         with Programs(options.programs) as programs:
             try:
@@ -192,4 +196,7 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        sys.exit(130)

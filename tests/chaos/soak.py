@@ -12,6 +12,7 @@ Exit status: 0 flat, 1 something grows or a promise was broken, 64 wrong use.
 """
 
 import argparse
+import contextlib
 import json
 import os
 import pathlib
@@ -19,12 +20,13 @@ import statistics
 import sys
 import time
 
-from chaos import NODES, load_package
+from chaos import NODES, wrong_use
 from faults import draw_faults, draw_links
 from work import Editor
 from world import ChaosError, World
 
-from cluster import BenchError, Programs  # of the bench on the wire
+from cluster import BenchError, Programs  # of the bench on the wire, like the next one
+from edits import load_package
 
 SECONDS_BETWEEN_SAMPLES = 2.0
 MEAN_GAP = 4.0  # s between two faults
@@ -37,16 +39,26 @@ def resident_bytes(pid):
         return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
+def sizes_below(folder):
+    """Bytes of each file; those that the master removes meanwhile are left out."""
+    sizes = []
+    for path in folder.rglob("*"):
+        with contextlib.suppress(FileNotFoundError):
+            if path.is_file():
+                sizes.append(path.stat().st_size)
+    return sizes
+
+
 def sample(world, editor):
     """Figures of this moment, by name."""
-    session = world.folder / "session"
+    session = sizes_below(world.folder / "session")
     latencies, editor.latencies = editor.latencies, []
     return {
         "master_bytes": resident_bytes(world.master.child.pid),
         "node_bytes": resident_bytes(world.nodes[NODES[0]].child.pid),
         "master_files": len(os.listdir(f"/proc/{world.master.child.pid}/fd")),
-        "session_files": sum(len(files) for _, _, files in os.walk(session)),
-        "session_bytes": sum(path.stat().st_size for path in session.rglob("*") if path.is_file()),
+        "session_files": len(session),
+        "session_bytes": sum(session),
         "edit_seconds": latencies,
     }
 
@@ -108,6 +120,7 @@ def soak(world, tessera, options):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.error = wrong_use
     parser.add_argument("programs", type=pathlib.Path, help="bin folder of a build")
     parser.add_argument("python", type=pathlib.Path, help="python folder of a build")
     parser.add_argument("--minutes", type=float, default=120.0, help="how long (120)")
@@ -115,7 +128,10 @@ def main():
     parser.add_argument("--backend", default="embree", help="back-end of the nodes (embree)")
     parser.add_argument("--json", type=pathlib.Path, help="write all figures to this file")
     options = parser.parse_args()
-    tessera = load_package(options.python)
+    try:
+        tessera = load_package(options.python)
+    except BenchError as error:
+        wrong_use(str(error))
     try:
         with Programs(options.programs) as programs, World(programs, draw_links(options.seed, [*NODES, "editor"]),
                                                            options.backend) as world:
@@ -135,4 +151,7 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        sys.exit(130)

@@ -41,7 +41,6 @@ class Renders:
     def __init__(self, world, expected):
         self._world, self._expected = world, expected
         self.process, self.finished, self.killed, self._started = None, 0, 0, 0
-        self._is_stopped = False
 
     def start(self):
         number = self._started % len(FRAMES)

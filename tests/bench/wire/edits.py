@@ -113,8 +113,8 @@ def load_package(folder):
     try:
         import tessera
     except ImportError as error:
-        raise BenchError(f"the Python package 'tessera' cannot be used ({error}): build it (deploy/setup.sh), name its folder with "
-                         "--python, and run this script with /usr/bin/python3, which has python3-zmq and python3-protobuf") from error
+        raise BenchError(f"the Python package 'tessera' cannot be used ({error}): build it (deploy/setup.sh), name its folder, "
+                         "as build/release/python, and run this script with /usr/bin/python3, which has python3-zmq and python3-protobuf") from error
     return tessera
 
 
