@@ -128,7 +128,7 @@ void RenderMaster::step(TimePoint now, std::stop_token stop) {
 // Film goes to its thread at once; other messages wait for their turn.
 bool RenderMaster::take_in(net::Received received) {
     constexpr int BurstLimit = 256;  // both limits: so that nothing else is delayed
-    constexpr Duration BurstTime = std::chrono::milliseconds(4);
+    constexpr Duration BurstTime = std::chrono::milliseconds(2);
     const TimePoint begun = clock_.now();
     for (int taken = 1;; ++taken) {
         auto* message = std::get_if<net::Message>(&received);
