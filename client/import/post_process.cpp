@@ -24,7 +24,8 @@ std::string causes(const std::vector<std::string>& notices) {
 }  // namespace
 
 void add_framing_camera(SceneBuilder& builder, const Bounds& bounds) {
-    // So that the camera is not beyond what a scene may have.
+    // So that the camera is not beyond what a scene may have: it is some times as far away as the scene extends, more
+    // only for pictures that are hundreds of times as high as wide.
     constexpr double MaxVisible = scene::MaxCoordinate / 1000.0;
     Bounds visible = bounds;
     if (!bounds.empty()) {

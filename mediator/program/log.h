@@ -16,8 +16,9 @@ struct LogSettings {
     std::string format = "text";  // or json: an object per line
 };
 
-// --log-level, --log-file and --log-format.
 class CommandLine;
+
+// --log-level, --log-file and --log-format.
 void add_log_options(CommandLine& line, LogSettings& settings);
 
 // The log of a program; libraries report by return value or callback. Thread-safe.

@@ -80,14 +80,18 @@ TEST(Framing, OfNothingAndOfAPointIsOfABoxAroundIt) {
 }
 
 // The aspect ratio is an option of the importer.
-TEST(Framing, ComesWithAFileThatHasNoCamera) {
+std::string file_of_a_triangle(const std::vector<glm::vec3>& corners) {
     SceneFile file;
-    const int at = file.positions({{0, 0, 0}, {30, 0, 0}, {0, 0, -2}});
+    const int at = file.positions(corners);
     file.add("meshes", R"({"primitives":[{"attributes":{"POSITION":)" + std::to_string(at) + "}}]}");
     file.add("nodes", R"({"mesh":0})");
     file.add("scenes", R"({"nodes":[0]})");
+    return file.glb();
+}
+
+TEST(Framing, ComesWithAFileThatHasNoCamera) {
     const TestFolder folder;
-    const auto path = folder.write("scene.glb", file.glb());
+    const auto path = folder.write("scene.glb", file_of_a_triangle({{0, 0, 0}, {30, 0, 0}, {0, 0, -2}}));
     for (const double aspect : {1.0, 2.5}) {
         const ImportedScene scene = loaded(path, {.aspect_ratio = aspect});
         ASSERT_EQ(scene.cameras.size(), 1u);
@@ -99,13 +103,9 @@ TEST(Framing, ComesWithAFileThatHasNoCamera) {
 }
 
 TEST(Framing, OfAHugeSceneStaysWithinWhatASceneMayHave) {
-    SceneFile file;
-    const int at = file.positions({{0, 0, 0}, {9e14f, 0, 0}, {0, 9e14f, 0}});
-    file.add("meshes", R"({"primitives":[{"attributes":{"POSITION":)" + std::to_string(at) + "}}]}");
-    file.add("nodes", R"({"mesh":0})");
-    file.add("scenes", R"({"nodes":[0]})");
     const TestFolder folder;
-    const ImportedScene scene = loaded(folder.write("scene.glb", file.glb()));
+    const ImportedScene scene =
+        loaded(folder.write("scene.glb", file_of_a_triangle({{0, 0, 0}, {9e14f, 0, 0}, {0, 9e14f, 0}})));
     expect_consistent(scene);
     ASSERT_EQ(scene.cameras.size(), 1u);
     EXPECT_THAT(scene.notices, testing::Contains(testing::HasSubstr("within 1e12 m")));
