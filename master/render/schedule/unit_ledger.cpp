@@ -227,6 +227,7 @@ void UnitLedger::node_gone(const Loss& loss) {
             end(id, loss.node, Fate::Lost);
         }
     }
+    if (loss.rendering > 0) lost_.insert(loss.node);
     const std::optional<UnitId> killer = loss.has_ended ? most_suspect(rendered) : std::nullopt;
     has_losses_ = has_losses_ || !rendered.empty();
     for (const UnitId id : rendered) {
@@ -234,6 +235,13 @@ void UnitLedger::node_gone(const Loss& loss) {
              loss.describe ? loss.describe(open_.at(id).unit) : "");
     }
     by_node_.erase(loss.node);
+}
+
+std::size_t UnitLedger::other_losses(const UnitTrouble& trouble) const {
+    return static_cast<std::size_t>(std::ranges::count_if(lost_, [&](NodeId node) {
+        return !survivors_.contains(node) &&
+               std::ranges::find(trouble.lost_with, node) == trouble.lost_with.end();
+    }));
 }
 
 std::optional<UnitId> UnitLedger::most_suspect(const std::vector<UnitId>& units) const {
@@ -281,6 +289,7 @@ void UnitLedger::explain(const std::shared_ptr<const UnitTrouble>& trouble, bool
 
 void UnitLedger::blame_samples(const std::shared_ptr<const UnitTrouble>& trouble) {
     explain(trouble, false);
+    for (const NodeId node : trouble->lost_with) lost_.erase(node);
 }
 
 std::uint32_t UnitLedger::unexplained_failures(NodeId node) const {

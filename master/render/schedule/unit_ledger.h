@@ -118,7 +118,9 @@ class UnitLedger {
     // other, that one has killed it.
     void node_gone(const Loss& loss);
     void came_back(NodeId node) { survivors_.insert(node); }  // a lost one: it had lost its connection
-    bool is_settled(const UnitTrouble& trouble) const { return trouble.is_settled(survivors_); }
+    bool is_settled(const UnitTrouble& trouble) const {
+        return trouble.is_settled(survivors_, other_losses(trouble));
+    }
     // It has cost two nodes, but nothing says that others did not: see UnitTrouble.
     bool is_suspect(const std::shared_ptr<const UnitTrouble>& trouble) const { return lives(trouble) >= 2; }
     bool holds_suspect(NodeId node) const;
@@ -157,6 +159,7 @@ class UnitLedger {
     void hold(UnitId id, Unit& unit, NodeId node, TimePoint now);
     void close(std::map<UnitId, Unit>::iterator entry, NodeId node, Fate fate);
     void forget_former(std::uint32_t tile);
+    std::size_t other_losses(const UnitTrouble& trouble) const;
     std::optional<UnitId> most_suspect(const std::vector<UnitId>& units) const;
     void explain(const std::shared_ptr<const UnitTrouble>& trouble, bool nodes_are_to_blame);
     template <class Visit>
@@ -173,6 +176,7 @@ class UnitLedger {
     std::map<NodeId, std::set<UnitId>> by_node_;
     std::vector<BlockSet> arrived_;  // by tile
     std::set<std::shared_ptr<const UnitTrouble>> unexplained_;
+    std::set<NodeId> lost_;  // and nothing explains it yet
     std::set<NodeId> survivors_;
     bool has_losses_ = false;
     std::vector<Returned> returned_;

@@ -44,8 +44,11 @@ struct UnitTrouble {
     }
     // The samples are to blame, not the nodes: they failed on two (on one twice if there is no other), or have killed two.
     // Nodes that vanish for any reason (a lost connection, a preempted machine) are evidence only when there are three.
-    bool is_settled(const std::set<NodeId>& survivors) const {
-        return failures >= 2 || has_killed || lives(survivors) >= 3;
+    // `other_losses` are nodes that were lost without these samples. Where nodes die anyway, two of them may have had the
+    // same samples by chance: then one or two more are needed.
+    bool is_settled(const std::set<NodeId>& survivors, std::size_t other_losses = 0) const {
+        const std::size_t needed = (has_killed ? 2 : 3) + std::min<std::size_t>(other_losses, 2);
+        return failures >= 2 || lives(survivors) >= needed;
     }
 };
 

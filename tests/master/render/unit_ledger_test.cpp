@@ -167,6 +167,39 @@ TEST_F(UnitLedgerTest, SamplesThatWereRenderedAsTwoProcessesEndedAreToBlame) {
     EXPECT_TRUE(ledger.is_settled(*lost[0].trouble));
 }
 
+TEST_F(UnitLedgerTest, SamplesAreNotToBlameAsSoonWhereNodesDieAnyway) {
+    const TimePoint later = TimePoint{} + std::chrono::seconds(1);
+    const auto ends = [&](std::uint64_t node) {
+        ledger.node_gone(
+            {.node = NodeId{node}, .rendering = 1, .has_ended = true, .now = later, .describe = {}});
+    };
+    const auto kills = [&](std::uint64_t node, std::uint32_t tile,
+                           std::shared_ptr<const UnitTrouble> trouble) {
+        ledger.deal({.id = ledger.next_unit(), .version = Scene, .tile = tiles[tile], .block = {0, 2}}, tile,
+                    std::move(trouble), NodeId{node}, {});
+        ends(node);
+        return ledger.take_returned().at(0).trouble;
+    };
+    const auto deaths_until_settled = [&](std::uint64_t first, std::uint32_t tile) {
+        std::shared_ptr<const UnitTrouble> trouble;
+        for (std::uint64_t node = first; node < first + 9; ++node) {
+            trouble = kills(node, tile, trouble);
+            if (!ledger.is_settled(*trouble)) continue;
+            ledger.blame_samples(trouble);
+            return node - first + 1;
+        }
+        return std::uint64_t{0};
+    };
+    EXPECT_EQ(deaths_until_settled(20, 0), 2u);
+    EXPECT_EQ(deaths_until_settled(30, 1), 2u) << "the samples of the other tile explain its losses";
+    ends(40);
+    EXPECT_EQ(deaths_until_settled(50, 0), 3u);
+    for (std::uint64_t node = 60; node < 70; ++node) ends(node);
+    EXPECT_EQ(deaths_until_settled(70, 1), 4u);
+    for (std::uint64_t node = 60; node < 70; ++node) ledger.came_back(NodeId{node});
+    EXPECT_EQ(deaths_until_settled(80, 0), 3u) << "those that are back had only lost their connection";
+}
+
 TEST_F(UnitLedgerTest, AProcessThatComesBackWasNotKilled) {
     const TimePoint later = TimePoint{} + std::chrono::seconds(1);
     std::shared_ptr<const UnitTrouble> trouble;
