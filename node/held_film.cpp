@@ -90,10 +90,13 @@ std::size_t HeldFilm::unit_count() const {
     return count;
 }
 
-std::optional<TimePoint> HeldFilm::oldest() const {
-    std::optional<TimePoint> oldest;
-    for (const Item& item : items_) oldest = std::min(oldest.value_or(item.since), item.since);
-    return oldest;
+std::optional<TimePoint> HeldFilm::next_event(const std::function<Duration(ViewId)>& limit) const {
+    std::optional<TimePoint> first;
+    for (const Item& item : items_) {
+        const TimePoint due = item.since + limit(item.film.view);
+        first = std::min(first.value_or(due), due);
+    }
+    return first;
 }
 
 }  // namespace tessera::node

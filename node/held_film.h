@@ -30,7 +30,8 @@ class HeldFilm {
 
     bool empty() const { return items_.empty(); }
     std::size_t unit_count() const;
-    std::optional<TimePoint> oldest() const;
+    // When the first item will have waited for its limit.
+    std::optional<TimePoint> next_event(const std::function<Duration(ViewId)>& limit) const;
 
   private:
     std::vector<Item> items_;

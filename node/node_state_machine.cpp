@@ -281,7 +281,10 @@ void NodeStateMachine::fail(const std::string& reason) {
 }
 
 TimePoint NodeStateMachine::next_event(TimePoint now) const {
-    TimePoint next = reconnect_at_ ? *reconnect_at_ : liveness_.next_event();
+    // Heartbeats begin with the welcome.
+    TimePoint next = reconnect_at_ ? *reconnect_at_
+                     : welcomed_   ? liveness_.next_event()
+                                   : liveness_.times_out_at();
     if (const auto due = scene_.next_event(now)) next = std::min(next, *due);
     if (leave_by_) next = std::min(next, *leave_by_);
     if (const auto due = units_.next_event()) next = std::min(next, std::max(now, *due));

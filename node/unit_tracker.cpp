@@ -273,18 +273,19 @@ void UnitTracker::send_ready(TimePoint now) {
         return std::any_of(waiting.begin(), waiting.end(), in_other_half) ||
                std::any_of(rendering.begin(), rendering.end(), in_other_half);
     };
-    const auto limit = [&](ViewId view) {
-        const auto opened = views_.find(view);
-        return opened == views_.end() ? Duration::zero() : opened->second.hold_film;
-    };
-    for (HeldFilm::Item& item : held_.take_ready(is_coming, limit, now)) send_held(std::move(item));
+    for (HeldFilm::Item& item : held_.take_ready(
+             is_coming, [&](ViewId view) { return hold_limit(view); }, now))
+        send_held(std::move(item));
     if (held_.unit_count() > MaxHeldUnits) send_all_held();
 }
 
 std::optional<TimePoint> UnitTracker::next_event() const {
-    constexpr Duration Step = std::chrono::milliseconds(50);  // limits differ by view
-    const auto oldest = held_.oldest();
-    return oldest ? std::optional(*oldest + Step) : std::nullopt;
+    return held_.next_event([&](ViewId view) { return hold_limit(view); });
+}
+
+Duration UnitTracker::hold_limit(ViewId view) const {
+    const auto opened = views_.find(view);
+    return opened == views_.end() ? Duration::zero() : opened->second.hold_film;
 }
 
 void UnitTracker::send_all_held() {

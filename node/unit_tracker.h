@@ -58,6 +58,7 @@ class UnitTracker {
     void release_held(ViewId view, const std::string& message);
     void stop_of(ViewId view);
     void stop(UnitId unit, wire::ReleaseReason reason);
+    Duration hold_limit(ViewId view) const;  // how long film of it may wait
     void send_held(HeldFilm::Item&& item);
     void send_all_held();
     void send_parts(const view::WorkUnit& unit, UnitOutcome&& outcome);

@@ -24,11 +24,15 @@ bool Liveness::heartbeat_due(TimePoint now) const {
 }
 
 bool Liveness::timed_out(TimePoint now) const {
-    return now - last_heard_ >= settings_.interval * settings_.missed;
+    return now >= times_out_at();
+}
+
+TimePoint Liveness::times_out_at() const {
+    return last_heard_ + settings_.interval * settings_.missed;
 }
 
 TimePoint Liveness::next_event() const {
-    return std::min(last_sent_ + settings_.interval, last_heard_ + settings_.interval * settings_.missed);
+    return std::min(last_sent_ + settings_.interval, times_out_at());
 }
 
 Duration Liveness::next_backoff() {

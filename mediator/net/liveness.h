@@ -19,6 +19,7 @@ class Liveness {
     void sent_heartbeat(TimePoint now);
     bool heartbeat_due(TimePoint now) const;
     bool timed_out(TimePoint now) const;
+    TimePoint times_out_at() const;
     TimePoint next_event() const;  // when a heartbeat is due or the peer has timed out, whichever comes first
 
     // After a timeout: doubles from min_backoff to max_backoff until on_message() resets it.

@@ -38,6 +38,8 @@ struct MachineTest : testing::Test {
     void collect() {
         machine->tick(now);
         for (node::Action& action : machine->take_actions()) actions.push_back(std::move(action));
+        if (machine->state() != node::NodeStateMachine::State::Left)
+            EXPECT_GT(machine->next_event(now), now) << "it would not sleep";
     }
 
     void send(wire::ControlMessage message) {

@@ -216,9 +216,12 @@ TEST_F(HeldUnitsTest, HalvesOfABlockAreSentMerged) {
 }
 
 TEST_F(HeldUnitsTest, FilmIsNotHeldForEver) {
+    const TimePoint begin = now;
     finish(1, First);
+    for (int i = 0; i < 9; ++i) pass(std::chrono::milliseconds(500));
     EXPECT_TRUE(take<SendFilm>().empty());
-    pass(seconds(6));
+    EXPECT_EQ(machine->next_event(now), begin + seconds(5));
+    pass(seconds(1));
     EXPECT_EQ(take<SendFilm>().size(), 1u);
 }
 

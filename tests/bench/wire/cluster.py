@@ -129,6 +129,11 @@ class Cluster:
         self.close()
 
     @property
+    def children(self):
+        """The processes of the master and of the nodes."""
+        return list(self._children)
+
+    @property
     def line(self):
         return self._line
 
