@@ -61,8 +61,9 @@ void Link::ask(const wire::BlobRequest& request) {
 
 std::uint64_t Link::join() {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return joined_ != 0 || failure_; });
+    changed_.wait(lock, settings_.stop_connecting, [&] { return joined_ != 0 || failure_; });
     if (failure_) throw *failure_;
+    if (joined_ == 0) throw Error(ErrorCode::Unavailable, "interrupted before the master has answered");
     return joined_;
 }
 

@@ -50,7 +50,7 @@ class Link {
     void ask(const wire::BlobRequest& request);
     std::uint64_t served_requests() const { return served_; }  // blob requests of the master
     bool is_away() const { return is_away_; }                  // reconnecting
-    std::uint64_t join();  // blocks until welcome; the session's number. Throws Error.
+    std::uint64_t join();  // blocks until welcome; the session's number. Throws Error, also when stopped.
     // The next one; nothing at the deadline or when stopped. Throws Error when the link is over.
     std::optional<Incoming> next(TimePoint deadline, std::stop_token stop);
 

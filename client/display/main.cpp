@@ -50,13 +50,14 @@ client_display::MakePresenter presenter(const Options& options) {
                                                        : client_display::WindowMode::FullScreen);
 }
 
-client::SessionSettings session_settings(const Options& options) {
+client::SessionSettings session_settings(const Options& options, std::stop_token stop) {
     return {.name = "output " + options.output,
             .host = tools::host_name(),
             .software = "tessera-display " + cli::version(),
             .pid = static_cast<std::uint64_t>(::getpid()),
-            .connect_limit = std::chrono::seconds(3),  // maximum delay of a stop
+            .connect_limit = std::chrono::seconds(3),
             .lost_limit = std::chrono::hours(24 * 365),
+            .stop_connecting = std::move(stop),
             .mirrors_scene = false};
 }
 
@@ -65,13 +66,13 @@ std::unique_ptr<client::Session> connected(const Options& options, std::shared_p
                                            const Clock& clock,
                                            const std::function<void(const std::string&)>& report,
                                            std::stop_token stop) {
-    const client::SessionSettings settings = session_settings(options);
+    const client::SessionSettings settings = session_settings(options, stop);
     for (bool notified = false; !stop.stop_requested(); notified = true) {
         try {
             return client::connect(options.address, blobs, clock, settings);
         } catch (const Error& error) {
             if (error.code() != ErrorCode::Unavailable) throw;
-            if (!notified) report(std::string(error.what()) + " Waiting");
+            if (!notified && !stop.stop_requested()) report(std::string(error.what()) + " Waiting");
         }
     }
     return nullptr;
@@ -83,7 +84,8 @@ bool await_scene(const Options& options, const std::shared_ptr<scene::BlobStore>
     for (bool notified = false; !stop.stop_requested();) {
         std::this_thread::sleep_for(std::chrono::milliseconds(500));
         try {
-            const auto session = client::connect(options.address, blobs, clock, session_settings(options));
+            const auto session =
+                client::connect(options.address, blobs, clock, session_settings(options, stop));
             const session::SceneStatus scene = session->status().scene;
             if (!scene.title.empty() && !scene.exclusive) return true;
             if (!std::exchange(notified, true)) report("the live scene was closed; waiting for the next one");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stop_token>
 #include <string>
 
 #include "client/session.h"
@@ -11,6 +12,6 @@ namespace tessera::tools {
 void add_cluster_options(cli::CommandLine& line, client::Address& address);
 
 // The settings that identify this program to a master under the given name.
-client::SessionSettings session_settings(const std::string& name);
+client::SessionSettings session_settings(const std::string& name, std::stop_token stop_connecting = {});
 
 }  // namespace tessera::tools

@@ -2,6 +2,8 @@
 
 #include <iostream>
 
+#include "client/tools/interrupts.h"
+
 namespace tessera::tools {
 
 int report_error(std::string_view command, int code, std::string_view message) {
@@ -14,7 +16,8 @@ int exit_code(ErrorCode code) {
         case ErrorCode::InvalidInput:
         case ErrorCode::NotFound:
             return ExitBadInput;
-        case ErrorCode::Unavailable:
+        case ErrorCode::Unavailable:  // it would still be waiting
+            return Interrupts::requested() ? ExitInterrupted : cli::ExitUnavailable;
         case ErrorCode::OutOfMemory:
             return cli::ExitUnavailable;
         case ErrorCode::Refused:

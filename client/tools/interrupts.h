@@ -10,6 +10,7 @@ namespace tessera::tools {
 class Interrupts {
   public:
     Interrupts();
+    static bool requested();  // in this process
     std::stop_token token() const { return source_.get_token(); }
 
   private:

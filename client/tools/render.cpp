@@ -84,7 +84,8 @@ class Render {
 
     void connect() {
         if (plan_.address) {
-            session_ = client::connect(*plan_.address, blobs_, clock_, session_settings("tessera " + name_));
+            session_ = client::connect(*plan_.address, blobs_, clock_,
+                                       session_settings("tessera " + name_, interrupts_.token()));
             return;
         }
         embedded_.emplace(plan_.embedded, blobs_, clock_, quiet_log(log_));

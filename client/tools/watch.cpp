@@ -94,7 +94,7 @@ class Watch {
         }
         if (const auto code = choose_size()) return *code;
         session_ = client::connect(options_.address, std::make_shared<scene::BlobStore>(), clock_,
-                                   session_settings(options_.name));
+                                   session_settings(options_.name, interrupts_.token()));
         const auto joined = session_->join(
             {.title = options_.title,
              .when_busy = options_.no_wait ? client::WhenBusy::GiveUp : client::WhenBusy::Queue,

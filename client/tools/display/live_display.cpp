@@ -4,9 +4,10 @@
 
 namespace tessera::tools {
 
-DisplayMember join_display(const client::Address& address, const std::string& name, const Clock& clock) {
+DisplayMember join_display(const client::Address& address, const std::string& name, const Clock& clock,
+                           std::stop_token stop_connecting) {
     const auto blobs = std::make_shared<scene::BlobStore>();
-    client::SessionSettings settings = session_settings(name);
+    client::SessionSettings settings = session_settings(name, std::move(stop_connecting));
     settings.mirrors_scene = false;
     DisplayMember member{{}, client::connect(address, blobs, clock, settings)};
     member.display = member.session->status().display.name;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <stop_token>
 #include <string>
 
 #include "client/session.h"
@@ -14,6 +15,7 @@ struct DisplayMember {
 };
 
 // `name`: of the member, as others see it. Throws Error{Refused} when no display is open, without starting a scene.
-DisplayMember join_display(const client::Address& address, const std::string& name, const Clock& clock);
+DisplayMember join_display(const client::Address& address, const std::string& name, const Clock& clock,
+                           std::stop_token stop_connecting = {});
 
 }  // namespace tessera::tools

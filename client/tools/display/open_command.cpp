@@ -53,8 +53,8 @@ int run(const OpenOptions& options) {
     const auto blobs = std::make_shared<scene::BlobStore>();
     const display_file::DisplayFile file = display_file::read_display(options.file, *blobs);
     const display::Display& display = file.display;
-    const auto session =
-        client::connect(options.address, blobs, clock, session_settings("display " + display.name));
+    const auto session = client::connect(options.address, blobs, clock,
+                                         session_settings("display " + display.name, interrupts.token()));
     const auto joined =
         session->join({.title = options.title,
                        .when_busy = options.no_wait ? client::WhenBusy::GiveUp : client::WhenBusy::Queue,

@@ -31,7 +31,7 @@ class Tracking {
   public:
     explicit Tracking(const TrackOptions& options)
         : socket_(options.bind, static_cast<std::uint16_t>(options.port)),
-          member_(join_display(options.address, "tessera display track", clock_)) {
+          member_(join_display(options.address, "tessera display track", clock_, interrupts_.token())) {
         std::cout << "display '" << member_.display << "' follows heads received on UDP " << options.bind
                   << " port " << socket_.port() << std::endl;
     }
