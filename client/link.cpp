@@ -31,6 +31,8 @@ Link::Link(std::unique_ptr<net::Channel> channel, std::function<void()> reconnec
       settings_(settings),
       liveness_(liveness_settings(settings.heartbeat, 3), clock.now()),
       lost_since_(clock.now()),
+      last_heard_(clock.now()),
+      heartbeat_(settings.heartbeat),
       thread_([this](std::stop_token stop) { run(stop); }) {}
 
 Link::~Link() {
@@ -61,7 +63,7 @@ void Link::ask(const wire::BlobRequest& request) {
 
 std::uint64_t Link::join() {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, settings_.stop_connecting, [&] { return joined_ != 0 || failure_; });
+    changed_.wait(lock, settings_.stop, [&] { return joined_ != 0 || failure_; });
     if (failure_) throw *failure_;
     if (joined_ == 0) throw Error(ErrorCode::Unavailable, "interrupted before the master has answered");
     return joined_;
@@ -77,6 +79,10 @@ std::optional<Incoming> Link::next(TimePoint deadline, std::stop_token stop) {
     }
     if (failure_) throw *failure_;
     return std::nullopt;
+}
+
+bool Link::is_silent() const {
+    return is_away_ || clock_.now() - last_heard_.load() > 3 * heartbeat_.load() / 2;
 }
 
 void Link::run(std::stop_token stop) {
@@ -129,6 +135,7 @@ bool Link::step(std::stop_token stop) {
 
 void Link::receive(const net::Message& message, TimePoint now) {
     liveness_.on_message(now);
+    last_heard_ = now;
     lost_since_ = now;
     // Malformed messages count as lost; calls that wait for them have deadlines.
     if (message.link == net::Link::Control) {
@@ -181,6 +188,7 @@ void Link::welcome(const wire::Welcome& welcome, TimePoint now) {
                                                    std::chrono::minutes(1));
     settings_.heartbeat = interval;
     liveness_ = net::Liveness(liveness_settings(interval, std::max(1u, welcome.missed_heartbeats)), now);
+    heartbeat_ = interval;
     beat(now);
     if (first) {
         const std::scoped_lock lock(mutex_);

@@ -50,7 +50,8 @@ class Link {
     void ask(const wire::BlobRequest& request);
     std::uint64_t served_requests() const { return served_; }  // blob requests of the master
     bool is_away() const { return is_away_; }                  // reconnecting
-    std::uint64_t join();  // blocks until welcome; the session's number. Throws Error, also when stopped.
+    bool is_silent() const;  // the same, or the master's latest heartbeat is overdue
+    std::uint64_t join();    // blocks until welcome; the session's number. Throws Error, also when stopped.
     // The next one; nothing at the deadline or when stopped. Throws Error when the link is over.
     std::optional<Incoming> next(TimePoint deadline, std::stop_token stop);
 
@@ -95,6 +96,8 @@ class Link {
     std::optional<std::string> goodbye_;  // the master left with this reason, and may come back
     std::atomic<std::uint64_t> served_ = 0;
     std::atomic<bool> is_away_ = false;
+    std::atomic<TimePoint> last_heard_;
+    std::atomic<Duration> heartbeat_;
 
     std::mutex mutex_;  // protects the members below
     std::condition_variable_any changed_;

@@ -33,8 +33,8 @@ struct SessionSettings {
     Duration lost_limit =
         std::chrono::seconds(30);  // later: without a message while reconnecting or waiting for a delivery
     Duration heartbeat = std::chrono::seconds(1);  // until the master's welcome sets it
-    // Requested: a session that still waits for its first welcome throws Error instead.
-    std::stop_token stop_connecting = {};
+    // Requested: waiting for a master that does not answer ends within a second, with Error{Unavailable}.
+    std::stop_token stop = {};
     bool mirrors_scene = true;  // mirror live scenes on join; otherwise scene() is empty until a refresh
     // Called on the caller's thread when the connection is lost (and being re-established) and when it is back.
     std::function<void(bool is_away)> on_away = {};

@@ -19,6 +19,8 @@ namespace tessera::client {
 
 inline constexpr Duration Slice =
     std::chrono::milliseconds(200);  // how long to wait before checking timeouts
+// For a master that does not answer, after an interrupt.
+inline constexpr Duration InterruptedWait = std::chrono::milliseconds(500);
 
 // The client's protocol state: unanswered requests, received messages, and recovery after a lost connection.
 // Not thread-safe.
@@ -96,8 +98,12 @@ struct Session::Implementation {
         question.request = request;
         asked.emplace(request, question);
         link.send(std::move(question));
-        const TimePoint deadline = clock.now() + settings.lost_limit;
-        while (!answers.contains(request)) {
+        TimePoint deadline = clock.now() + settings.lost_limit;
+        for (bool is_interrupted = false; !answers.contains(request);) {
+            if (!is_interrupted && settings.stop.stop_requested()) {
+                is_interrupted = true;
+                deadline = std::min(deadline, clock.now() + InterruptedWait);
+            }
             receive_next(std::min(clock.now() + Slice, deadline), {});
             throw_refusals();
             if (clock.now() >= deadline) {

@@ -57,7 +57,7 @@ client::SessionSettings session_settings(const Options& options, std::stop_token
             .pid = static_cast<std::uint64_t>(::getpid()),
             .connect_limit = std::chrono::seconds(3),
             .lost_limit = std::chrono::hours(24 * 365),
-            .stop_connecting = std::move(stop),
+            .stop = std::move(stop),
             .mirrors_scene = false};
 }
 

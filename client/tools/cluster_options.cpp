@@ -14,12 +14,12 @@ void add_cluster_options(cli::CommandLine& line, client::Address& address) {
     line.option("--user", "name of the key to use from a key folder", address.user);
 }
 
-client::SessionSettings session_settings(const std::string& name, std::stop_token stop_connecting) {
+client::SessionSettings session_settings(const std::string& name, std::stop_token stop) {
     return {.name = name,
             .host = host_name(),
             .software = "tessera " + cli::version(),
             .pid = static_cast<std::uint64_t>(::getpid()),
-            .stop_connecting = std::move(stop_connecting),
+            .stop = std::move(stop),
             .on_away = [name](bool is_away) {
                 std::cerr << name
                           << (is_away ? ": lost the connection to the master: reconnecting"

@@ -12,6 +12,6 @@ namespace tessera::tools {
 void add_cluster_options(cli::CommandLine& line, client::Address& address);
 
 // The settings that identify this program to a master under the given name.
-client::SessionSettings session_settings(const std::string& name, std::stop_token stop_connecting = {});
+client::SessionSettings session_settings(const std::string& name, std::stop_token stop = {});
 
 }  // namespace tessera::tools

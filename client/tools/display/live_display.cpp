@@ -5,9 +5,9 @@
 namespace tessera::tools {
 
 DisplayMember join_display(const client::Address& address, const std::string& name, const Clock& clock,
-                           std::stop_token stop_connecting) {
+                           std::stop_token stop) {
     const auto blobs = std::make_shared<scene::BlobStore>();
-    client::SessionSettings settings = session_settings(name, std::move(stop_connecting));
+    client::SessionSettings settings = session_settings(name, std::move(stop));
     settings.mirrors_scene = false;
     DisplayMember member{{}, client::connect(address, blobs, clock, settings)};
     member.display = member.session->status().display.name;

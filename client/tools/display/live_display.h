@@ -16,6 +16,6 @@ struct DisplayMember {
 
 // `name`: of the member, as others see it. Throws Error{Refused} when no display is open, without starting a scene.
 DisplayMember join_display(const client::Address& address, const std::string& name, const Clock& clock,
-                           std::stop_token stop_connecting = {});
+                           std::stop_token stop = {});
 
 }  // namespace tessera::tools
