@@ -118,7 +118,7 @@ class RenderMaster {
     SceneSession scene_;
     SessionService service_;
     std::uint64_t next_number_ = 1;
-    std::uint64_t dropped_messages_ = 0;
+    std::uint64_t dropped_messages_ = 0, lost_nodes_ = 0, lost_sessions_ = 0;
     std::string_view message_kind_;  // of the message that is being served
 
     std::mutex mutex_;  // protects the members below

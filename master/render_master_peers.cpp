@@ -178,6 +178,7 @@ void RenderMaster::remove_node(NodeId id, const std::string& why, Dispatcher::De
     if (node->leaving) {
         departure = Dispatcher::Departure::Expected;
     } else {
+        ++lost_nodes_;
         events_({wire::Severity::Warning,
                  "node " + node->hello.name + " is gone: " + why + dispatcher_.rendered_by(id),
                  {.node = node->hello.name}});
@@ -194,6 +195,7 @@ void RenderMaster::remove_session(SessionId id, Views::DisconnectReason reason, 
     if (session == nullptr) return;
     outbox_.forget(net::Link::Control, session->control);
     if (session->bulk) outbox_.forget(net::Link::Bulk, *session->bulk);
+    if (reason == Views::DisconnectReason::Timeout) ++lost_sessions_;
     service_.closed(id, reason, now);
 }
 
@@ -257,7 +259,7 @@ session::ClusterStatus RenderMaster::status(TimePoint now) const {
                                  .blob_bytes = blobs_->byte_size(),
                                  .sessions = static_cast<std::uint32_t>(sessions_.all().size()),
                                  .queued = static_cast<std::uint32_t>(sessions_.queue().size()),
-                                 .dropped_messages = dropped_messages_ + dispatcher_.refused_film(),
+                                 .dropped_messages = dropped_messages_,
                                  .units = dispatcher_.counts(),
                                  .wire_bytes = outbox_.bytes,
                                  .scene = scene_.status(),
@@ -266,7 +268,10 @@ session::ClusterStatus RenderMaster::status(TimePoint now) const {
                                  .contradictions = dispatcher_.contradictions(),
                                  .caught_exceptions = guard_.caught(),
                                  .loop = monitor_.status(),
-                                 .verified_units = dispatcher_.verified_units()};
+                                 .verified_units = dispatcher_.verified_units(),
+                                 .refused_film = dispatcher_.refused_film(),
+                                 .lost_nodes = lost_nodes_,
+                                 .lost_sessions = lost_sessions_};
     if (settings_.refused_traffic) {
         const net::RefusedTraffic refused = settings_.refused_traffic();
         reply.refused_handshakes = refused.handshakes;
@@ -287,7 +292,16 @@ session::ClusterStatus RenderMaster::status(TimePoint now) const {
             .round_trip_seconds = node.round_trip_seconds,
             .stuck = node.stuck,
             .quarantine = {},
-            .idle_reason = dispatcher_.idle_reason(node)};
+            .idle_reason = dispatcher_.idle_reason(node),
+            .film_bytes = node.film_taken,
+            .scene_bytes = node.state.scene_bytes,
+            .silent_seconds = node.heartbeat_at == TimePoint{} ? 0.0 : seconds(now - node.heartbeat_at),
+            .units_waiting = static_cast<std::uint32_t>(node.pending.size()),
+            .last_fault = {}};
+        if (const auto* noted = dispatcher_.quarantine().faults(node.identity(), now)) {
+            entry.faults = noted->faults;
+            entry.last_fault = noted->reason;
+        }
         if (const auto* held = dispatcher_.quarantine().find(node.identity(), now)) {
             entry.quarantine = held->reason;
             entry.quarantine_seconds = seconds(*held->until - now);

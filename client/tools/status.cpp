@@ -101,6 +101,12 @@ std::string as_json(const session::ClusterStatus& status) {
                          {"quarantine", node.quarantine.empty() ? Json() : Json(node.quarantine)},
                          {"quarantine_seconds", node.quarantine_seconds},
                          {"idle_reason", node.idle_reason.empty() ? Json() : Json(node.idle_reason)},
+                         {"film_bytes", node.film_bytes},
+                         {"scene_bytes", node.scene_bytes},
+                         {"silent_seconds", node.silent_seconds},
+                         {"units_waiting", node.units_waiting},
+                         {"faults", node.faults},
+                         {"last_fault", node.last_fault.empty() ? Json() : Json(node.last_fault)},
                          {"clock_offset_seconds", node.clock_offset_seconds},
                          {"clock_bound_seconds", node.clock_bound_seconds}});
     }
@@ -114,6 +120,9 @@ std::string as_json(const session::ClusterStatus& status) {
         {"sessions", status.sessions},
         {"queued", status.queued},
         {"dropped_messages", status.dropped_messages},
+        {"refused_film", status.refused_film},
+        {"lost_nodes", status.lost_nodes},
+        {"lost_sessions", status.lost_sessions},
         {"units",
          {{"issued", units.issued},
           {"reissued", units.reissued},
@@ -150,6 +159,46 @@ double step_seconds(const session::LoopStatus& loop, double fraction) {
     return all > 0 ? loop.longest_step_seconds : 0.0;
 }
 
+// What was refused, sent again or lost since the master has started; nothing if there was none.
+void print_troubles(const session::ClusterStatus& status) {
+    const std::pair<std::uint64_t, const char*> troubles[] = {
+        {status.dropped_messages, "messages dropped: malformed, or not allowed for the role"},
+        {status.refused_film, "films refused: malformed, or not asked for"},
+        {status.refused_handshakes, "connections refused: their keys are not on the allow-list"},
+        {status.resyncs, "times that the whole scene was sent again to a node"},
+        {status.lost_nodes, "nodes lost: silent, or their connection broke"},
+        {status.lost_sessions, "clients lost: silent, or their connection broke"},
+        {status.contradictions, "contradictions between nodes of one kind: see the master's log"},
+        {status.caught_exceptions, "internal errors: see the master's log"},
+    };
+    for (const auto& [count, what] : troubles) {
+        if (count > 0) std::printf("%llu %s\n", static_cast<unsigned long long>(count), what);
+    }
+}
+
+void print_nodes(const std::vector<session::NodeStatus>& nodes) {
+    std::printf("%-16s %-16s %-9s %-10s %8s %6s %14s %9s %9s %6s %9s %21s\n", "node", "host", "back-end",
+                "phase", "version", "units", "Msamples/s", "film MiB", "heard s", "faults", "ping ms",
+                "clock ms");
+    for (const session::NodeStatus& node : nodes) {
+        std::printf(
+            "%-16.16s %-16.16s %-9.9s %-10s %8llu %6u %14.3f %9.1f %9.1f %6u %9.2f %11.3f +-%7.3f%s\n",
+            node.summary.name.c_str(), node.summary.host.c_str(), node.summary.backend.c_str(),
+            std::string(enumerator_name(node.phase)).c_str(),
+            static_cast<unsigned long long>(node.version.number), node.units_in_flight + node.units_waiting,
+            node.samples_per_second * 1e-6, double(node.film_bytes) / 1048576.0, node.silent_seconds,
+            node.faults, node.round_trip_seconds * 1e3, node.clock_offset_seconds * 1e3,
+            node.clock_bound_seconds * 1e3, node.stuck ? "  stuck" : "");
+        if (!node.quarantine.empty()) {
+            std::printf("  in quarantine for %.0f s: %s; tessera node release %s ends it\n",
+                        node.quarantine_seconds, node.quarantine.c_str(), node.summary.name.c_str());
+        } else if (node.faults > 0) {
+            std::printf("  latest fault: %s\n", node.last_fault.c_str());
+        }
+        if (!node.idle_reason.empty()) std::printf("  takes no part: %s\n", node.idle_reason.c_str());
+    }
+}
+
 void print_table(const session::ClusterStatus& status) {
     std::printf("%s, up %.0f s, scene version %llu, %llu blobs (%.1f MiB)\n", status.software.c_str(),
                 status.uptime_seconds, static_cast<unsigned long long>(status.version.number),
@@ -161,15 +210,7 @@ void print_table(const session::ClusterStatus& status) {
         "%llu cancelled, %llu refused, %llu lost\n",
         status.sessions, status.queued, count(units.issued), count(units.reissued), count(units.merged),
         count(units.duplicate), count(units.cancelled), count(units.refused), count(units.lost));
-    if (status.dropped_messages + status.contradictions + status.caught_exceptions > 0) {
-        std::printf(
-            "%llu messages dropped, %llu contradictions between nodes, %llu internal errors: see the "
-            "master's log\n",
-            count(status.dropped_messages), count(status.contradictions), count(status.caught_exceptions));
-    }
-    if (status.refused_handshakes > 0)
-        std::printf("%llu connections refused: their keys are not on the allow-list\n",
-                    count(status.refused_handshakes));
+    print_troubles(status);
     std::printf(
         "event loop: 99.9 %% of its steps within %.1f ms, the longest %.1f ms (%.1f ms of CPU time in %s)\n",
         1e3 * step_seconds(status.loop, 0.999), 1e3 * status.loop.longest_step_seconds,
@@ -193,21 +234,7 @@ void print_table(const session::ClusterStatus& status) {
         std::printf("no nodes: start some with tessera-node --master ...\n");
         return;
     }
-    std::printf("%-16s %-16s %-9s %-10s %8s %6s %14s %9s %21s\n", "node", "host", "back-end", "phase",
-                "version", "units", "Msamples/s", "ping ms", "clock ms");
-    for (const session::NodeStatus& node : status.nodes) {
-        std::printf("%-16.16s %-16.16s %-9.9s %-10s %8llu %6u %14.3f %9.2f %11.3f +-%7.3f%s\n",
-                    node.summary.name.c_str(), node.summary.host.c_str(), node.summary.backend.c_str(),
-                    std::string(enumerator_name(node.phase)).c_str(),
-                    static_cast<unsigned long long>(node.version.number), node.units_in_flight,
-                    node.samples_per_second * 1e-6, node.round_trip_seconds * 1e3,
-                    node.clock_offset_seconds * 1e3, node.clock_bound_seconds * 1e3,
-                    node.stuck ? "  stuck" : "");
-        if (!node.quarantine.empty())
-            std::printf("  in quarantine for %.0f s: %s; tessera node release %s ends it\n",
-                        node.quarantine_seconds, node.quarantine.c_str(), node.summary.name.c_str());
-        if (!node.idle_reason.empty()) std::printf("  takes no part: %s\n", node.idle_reason.c_str());
-    }
+    print_nodes(status.nodes);
 }
 
 int run(const StatusOptions& options) {

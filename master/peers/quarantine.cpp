@@ -48,6 +48,13 @@ const Quarantine::Entry* Quarantine::find(const Key& node, TimePoint now) const 
     return holds ? &entry->second : nullptr;
 }
 
+const Quarantine::Entry* Quarantine::faults(const Key& node, TimePoint now) const {
+    const auto entry = entries_.find(node);
+    const bool is_forgiven =
+        entry == entries_.end() || now - entry->second.last_fault > settings_.forgiven_after;
+    return is_forgiven || entry->second.faults == 0 ? nullptr : &entry->second;
+}
+
 bool Quarantine::release(const std::string& name, TimePoint now) {
     bool released = false;
     std::erase_if(entries_, [&](const auto& entry) {

@@ -39,6 +39,8 @@ class Quarantine {
     void begin(const Key& node, const std::string& reason, TimePoint now);
     // Null: it is not in quarantine.
     const Entry* find(const Key& node, TimePoint now) const;
+    // Null: nothing is held against it.
+    const Entry* faults(const Key& node, TimePoint now) const;
     // Ends that of all nodes with this name. False: none is in quarantine.
     bool release(const std::string& name, TimePoint now);
 

@@ -55,19 +55,29 @@ struct NodeStatus {
     double clock_offset_seconds = 0, clock_bound_seconds = 0;  // its clock minus the master's, +- bound
     std::string quarantine;                                    // why it gets no work; "" = it does
     double quarantine_seconds = 0;                             // until it does
-    std::string idle_reason;  // why it takes no part in what is rendered; "" = it may
+    std::string idle_reason;          // why it takes no part in what is rendered; "" = it may
+    std::uint64_t film_bytes = 0;     // that it has sent since it joined
+    std::uint64_t scene_bytes = 0;    // changes and blobs that it has received
+    double silent_seconds = 0;        // since its latest heartbeat
+    std::uint32_t units_waiting = 0;  // sent to it, and not confirmed by a heartbeat yet
+    std::uint32_t faults = 0;         // not forgiven yet; the next ones bring it into quarantine
+    std::string last_fault;           // the latest of these
     static constexpr auto describe(auto row) {
-        return std::tuple(row(1, "summary", &NodeStatus::summary), row(2, "phase", &NodeStatus::phase),
-                          row(3, "version", &NodeStatus::version),
-                          row(4, "units_in_flight", &NodeStatus::units_in_flight),
-                          row(5, "samples_per_second", &NodeStatus::samples_per_second),
-                          row(6, "round_trip_seconds", &NodeStatus::round_trip_seconds),
-                          row(7, "stuck", &NodeStatus::stuck),
-                          row(8, "clock_offset_seconds", &NodeStatus::clock_offset_seconds),
-                          row(9, "clock_bound_seconds", &NodeStatus::clock_bound_seconds),
-                          row(10, "quarantine", &NodeStatus::quarantine),
-                          row(11, "quarantine_seconds", &NodeStatus::quarantine_seconds),
-                          row(12, "idle_reason", &NodeStatus::idle_reason));
+        return std::tuple(
+            row(1, "summary", &NodeStatus::summary), row(2, "phase", &NodeStatus::phase),
+            row(3, "version", &NodeStatus::version), row(4, "units_in_flight", &NodeStatus::units_in_flight),
+            row(5, "samples_per_second", &NodeStatus::samples_per_second),
+            row(6, "round_trip_seconds", &NodeStatus::round_trip_seconds),
+            row(7, "stuck", &NodeStatus::stuck),
+            row(8, "clock_offset_seconds", &NodeStatus::clock_offset_seconds),
+            row(9, "clock_bound_seconds", &NodeStatus::clock_bound_seconds),
+            row(10, "quarantine", &NodeStatus::quarantine),
+            row(11, "quarantine_seconds", &NodeStatus::quarantine_seconds),
+            row(12, "idle_reason", &NodeStatus::idle_reason), row(13, "film_bytes", &NodeStatus::film_bytes),
+            row(14, "scene_bytes", &NodeStatus::scene_bytes),
+            row(15, "silent_seconds", &NodeStatus::silent_seconds),
+            row(16, "units_waiting", &NodeStatus::units_waiting), row(17, "faults", &NodeStatus::faults),
+            row(18, "last_fault", &NodeStatus::last_fault));
     }
 };
 
@@ -126,21 +136,24 @@ struct ClusterStatus {
     std::uint64_t caught_exceptions = 0;   // in the master's event loop: bugs, which it survived
     std::uint64_t refused_handshakes = 0;  // connections whose key is not on the allow-list
     LoopStatus loop;
-    std::uint64_t verified_units = 0;  // rendered again by another node, with the same bits
+    std::uint64_t verified_units = 0;                 // rendered again by another node, with the same bits
+    std::uint64_t refused_film = 0;                   // messages: malformed, or film that was not asked for
+    std::uint64_t lost_nodes = 0, lost_sessions = 0;  // that fell silent, or whose connection broke
     static constexpr auto describe(auto row) {
         using Self = ClusterStatus;
-        return std::tuple(row(1, "software", &Self::software), row(2, "version", &Self::version),
-                          row(3, "uptime_seconds", &Self::uptime_seconds), row(4, "blobs", &Self::blobs),
-                          row(5, "blob_bytes", &Self::blob_bytes), row(6, "sessions", &Self::sessions),
-                          row(7, "queued", &Self::queued),
-                          row(8, "dropped_messages", &Self::dropped_messages), row(9, "units", &Self::units),
-                          row(10, "wire_bytes", &Self::wire_bytes), row(11, "nodes", &Self::nodes),
-                          row(12, "scene", &Self::scene), row(13, "resyncs", &Self::resyncs),
-                          row(14, "display", &Self::display),
-                          row(15, "contradictions", &Self::contradictions),
-                          row(16, "caught_exceptions", &Self::caught_exceptions),
-                          row(17, "refused_handshakes", &Self::refused_handshakes),
-                          row(18, "loop", &Self::loop), row(19, "verified_units", &Self::verified_units));
+        return std::tuple(
+            row(1, "software", &Self::software), row(2, "version", &Self::version),
+            row(3, "uptime_seconds", &Self::uptime_seconds), row(4, "blobs", &Self::blobs),
+            row(5, "blob_bytes", &Self::blob_bytes), row(6, "sessions", &Self::sessions),
+            row(7, "queued", &Self::queued), row(8, "dropped_messages", &Self::dropped_messages),
+            row(9, "units", &Self::units), row(10, "wire_bytes", &Self::wire_bytes),
+            row(11, "nodes", &Self::nodes), row(12, "scene", &Self::scene),
+            row(13, "resyncs", &Self::resyncs), row(14, "display", &Self::display),
+            row(15, "contradictions", &Self::contradictions),
+            row(16, "caught_exceptions", &Self::caught_exceptions),
+            row(17, "refused_handshakes", &Self::refused_handshakes), row(18, "loop", &Self::loop),
+            row(19, "verified_units", &Self::verified_units), row(20, "refused_film", &Self::refused_film),
+            row(21, "lost_nodes", &Self::lost_nodes), row(22, "lost_sessions", &Self::lost_sessions));
     }
 };
 

@@ -89,7 +89,7 @@ TEST_F(FaultyNodes, FilmThatWasNeverAskedForChangesNoPicture) {
     const client::ViewResult result = render();
     done = true;
     EXPECT_NE(quarantine("forger").find("it sent film"), std::string::npos) << quarantine("forger");
-    EXPECT_GE(status.dropped_messages, 3u);
+    EXPECT_GE(status.refused_film, 3u);
     EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
     EXPECT_EQ(to_hex(frame::film_hash(*result.film())), honest_hash());
     expect_balanced();

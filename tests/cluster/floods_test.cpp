@@ -88,6 +88,7 @@ TEST_F(Floods, AStallOfTheLoopRemovesNoPeer) {
     cluster.stall(2500ms);  // peers time out after 1 s
     paint(0.5f);
     EXPECT_EQ(ann->status().nodes.size(), 1u);
+    EXPECT_EQ(ann->status().lost_nodes + ann->status().lost_sessions, 0u);
     EXPECT_EQ(ann->members().members.size(), 2u);
     EXPECT_EQ(events_with("is gone"), 0u);
     EXPECT_EQ(events_with(" left "), 0u);

@@ -43,6 +43,17 @@ TEST_F(QuarantineTest, ForgivesRareFaults) {
     }
 }
 
+TEST_F(QuarantineTest, NamesTheFaultsThatAreNotForgiven) {
+    EXPECT_EQ(quarantine.faults(Bad, now), nullptr);
+    quarantine.fault(Bad, "one", now);
+    quarantine.fault(Bad, "two", now);
+    ASSERT_NE(quarantine.faults(Bad, now), nullptr);
+    EXPECT_EQ(quarantine.faults(Bad, now)->faults, 2u);
+    EXPECT_EQ(quarantine.faults(Bad, now)->reason, "two");
+    EXPECT_EQ(quarantine.faults(Other, now), nullptr);
+    EXPECT_EQ(quarantine.faults(Bad, now + 11min), nullptr);
+}
+
 TEST_F(QuarantineTest, EndsByOrder) {
     EXPECT_FALSE(quarantine.release("render-7", now));
     for (int i = 0; i < 3; ++i) quarantine.fault(Bad, "", now);
