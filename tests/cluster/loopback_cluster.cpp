@@ -14,14 +14,24 @@ net::LivenessSettings quick_heartbeats() {
 
 }  // namespace
 
-LoopbackCluster::LoopbackCluster(const std::function<void(master::MasterSettings&)>& adjust)
+LoopbackCluster::LoopbackCluster(const std::function<void(master::MasterSettings&)>& adjust,
+                                 Transport transport)
     : hub_(net::LoopbackHub::Limits{.messages_per_queue = 4096}) {
     master::MasterSettings settings{.software = "test"};
     settings.liveness = quick_heartbeats();
     settings.collect_interval = std::chrono::milliseconds(50);
     settings.views.overdue_patience = std::chrono::seconds(1);
     if (adjust) adjust(settings);
-    master_ = std::make_unique<master::RenderMaster>(hub_.server(), std::make_shared<scene::BlobStore>(),
+    std::unique_ptr<net::Channel> server;
+    if (transport == Transport::ZeroMQ) {
+        static std::atomic<int> number = 0;
+        sockets_ = net::make_zmq_context();
+        endpoint_ = "inproc://cluster-" + std::to_string(++number);
+        server = net::make_zmq_server(sockets_, {.endpoint = endpoint_, .keys = {}});
+    } else {
+        server = hub_.server();
+    }
+    master_ = std::make_unique<master::RenderMaster>(std::move(server), std::make_shared<scene::BlobStore>(),
                                                      clock_, settings, [this](const master::Event& event) {
                                                          const std::scoped_lock lock(mutex_);
                                                          events_.push_back(event.text);
@@ -34,24 +44,29 @@ LoopbackCluster::~LoopbackCluster() {
     node_threads_.clear();
 }
 
+std::unique_ptr<net::Channel> LoopbackCluster::channel(net::Role role, const std::string& user) {
+    if (sockets_) return net::make_zmq_client(sockets_, {.endpoint = endpoint_, .keys = {}});
+    return hub_.client(role, user);
+}
+
 void LoopbackCluster::add_node(const std::string& backend, const NodeFaults& faults, Duration cost) {
     auto blobs = std::make_shared<scene::BlobStore>();
     auto made =
         backend::find_backend(backend).make({.threads = 1, .simulated_sample_cost = cost, .blobs = blobs});
     start_node(backend, std::move(made), blobs,
-               net::with_faults(hub_.client(net::Role::Node), faults.control, faults.bulk));
+               net::with_faults(channel(net::Role::Node), faults.control, faults.bulk));
 }
 
 void LoopbackCluster::add_node(const MakeBackend& make) {
     auto blobs = std::make_shared<scene::BlobStore>();
-    start_node("test", make({.threads = 1, .blobs = blobs}), blobs, hub_.client(net::Role::Node));
+    start_node("test", make({.threads = 1, .blobs = blobs}), blobs, channel(net::Role::Node));
 }
 
 void LoopbackCluster::add_node(LinkSwitch& link, Duration cost) {
     auto blobs = std::make_shared<scene::BlobStore>();
     auto made =
         backend::find_backend("null").make({.threads = 1, .simulated_sample_cost = cost, .blobs = blobs});
-    start_node("null", std::move(made), blobs, link.channel([this] { return hub_.client(net::Role::Node); }),
+    start_node("null", std::move(made), blobs, link.channel([this] { return channel(net::Role::Node); }),
                [&link] { link.reconnect(); });
 }
 
@@ -80,7 +95,7 @@ void LoopbackCluster::start_node(const std::string& kind, std::unique_ptr<backen
 
 std::unique_ptr<client::Session> LoopbackCluster::session(std::shared_ptr<scene::BlobStore> blobs,
                                                           net::Role role, const std::string& user) {
-    return client::make_session(hub_.client(role, user), nullptr, std::move(blobs), clock_, {.name = "test"});
+    return client::make_session(channel(role, user), nullptr, std::move(blobs), clock_, {.name = "test"});
 }
 
 std::unique_ptr<client::Session> LoopbackCluster::batch(const std::shared_ptr<scene::BlobStore>& blobs) {
@@ -94,8 +109,7 @@ std::unique_ptr<client::Session> LoopbackCluster::batch(const std::shared_ptr<sc
 std::unique_ptr<client::Session> LoopbackCluster::member(const std::string& name,
                                                          std::shared_ptr<scene::BlobStore> blobs,
                                                          net::Role role, const std::string& user) {
-    auto made =
-        client::make_session(hub_.client(role, user), nullptr, std::move(blobs), clock_, {.name = name});
+    auto made = client::make_session(channel(role, user), nullptr, std::move(blobs), clock_, {.name = name});
     made->join({.title = "test"}, {});
     return made;
 }

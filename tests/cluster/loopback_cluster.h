@@ -13,12 +13,16 @@
 #include "master/render_master.h"
 #include "mediator/net/fault_plan.h"
 #include "mediator/net/loopback.h"
+#include "mediator/net/zmq_channel.h"
 #include "node/render_node.h"
 #include "tests/cluster/link_switch.h"
 
 namespace tessera::test {
 
-// A master, nodes and clients in threads of this process, over the loopback, each with its own blob store.
+// How the peers of a test reach its master: in memory, or over sockets of ZeroMQ.
+enum class Transport : std::uint8_t { Loopback, ZeroMQ };
+
+// A master, nodes and clients in threads of this process, over the loopback or sockets, each with its own blob store.
 // The picture must not change, whatever faults the fault plans inject into a node's channel.
 class LoopbackCluster {
   public:
@@ -27,7 +31,8 @@ class LoopbackCluster {
     };
 
     // `adjust` changes the settings of the master, which are for quick tests.
-    explicit LoopbackCluster(const std::function<void(master::MasterSettings&)>& adjust = {});
+    explicit LoopbackCluster(const std::function<void(master::MasterSettings&)>& adjust = {},
+                             Transport transport = Transport::Loopback);
     ~LoopbackCluster();
 
     // `cost`: simulated time per sample of the null back-end.
@@ -47,10 +52,8 @@ class LoopbackCluster {
     std::unique_ptr<client::Session> member(const std::string& name, std::shared_ptr<scene::BlobStore> blobs,
                                             net::Role role = net::Role::Editor, const std::string& user = {});
     // A client controlled by the test.
-    std::unique_ptr<net::Channel> channel(net::Role role) { return hub_.client(role); }
-    std::unique_ptr<net::Channel> channel(net::Role role, const std::string& user) {
-        return hub_.client(role, user);
-    }
+    // With ZeroMQ everyone is an operator, since there are no keys.
+    std::unique_ptr<net::Channel> channel(net::Role role, const std::string& user = {});
     // The master's loop is away for so long, from now on.
     void stall(Duration time) {
         master_->post([time](net::Channel&) { std::this_thread::sleep_for(time); });
@@ -64,7 +67,9 @@ class LoopbackCluster {
 
     SteadyClock clock_;
     net::LoopbackHub hub_;
-    mutable std::mutex mutex_;  // protects events_
+    std::shared_ptr<net::ZmqContext> sockets_;  // null: the loopback
+    std::string endpoint_;                      // of the sockets
+    mutable std::mutex mutex_;                  // protects events_
     std::vector<std::string> events_;
     std::unique_ptr<master::RenderMaster> master_;
     std::jthread master_thread_;

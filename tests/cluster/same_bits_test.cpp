@@ -91,6 +91,24 @@ INSTANTIATE_TEST_SUITE_P(Clusters, SameBits,
                                           testing::Values(Policy::Tiled, Policy::Cooperative, Policy::Mixed),
                                           testing::ValuesIn(Troubles)));
 
+// Sockets add threads and queues of their own.
+class SameBitsOverZeroMQ : public testing::TestWithParam<Trouble> {};
+
+TEST_P(SameBitsOverZeroMQ, ForAnyFaults) {
+    LoopbackCluster cluster({}, Transport::ZeroMQ);
+    for (std::uint64_t i = 0; i < 3; ++i) {
+        LoopbackCluster::NodeFaults faults = GetParam().faults;
+        faults.control.seed += 100 * i;
+        faults.bulk.seed += 100 * i;
+        cluster.add_node("null", faults);
+    }
+    session::ViewRequest request = request_for(Policy::Mixed, 1);
+    request.min_nodes = 3;
+    EXPECT_EQ(hash_of(render(cluster, request)), reference_hash(1));
+}
+
+INSTANTIATE_TEST_SUITE_P(Faults, SameBitsOverZeroMQ, testing::ValuesIn(Troubles));
+
 TEST(Cluster, AnotherSeedGivesOtherBits) {
     EXPECT_NE(reference_hash(1), reference_hash(2));
 }
