@@ -28,8 +28,7 @@ from faults import draw_faults, draw_links
 from work import Editor, Expected, Job, Renders, wait_until
 from world import ChaosError, World
 
-from cluster import BenchError, Programs  # of the bench on the wire, like the next one
-from edits import load_package
+from cluster import ClusterError, Programs, load_package
 
 NODES = ["node-1", "node-2", "node-3"]
 PATIENCE = 120  # s until a calm cluster has finished everything
@@ -177,13 +176,13 @@ def main():
         tessera = load_package(options.python)
         with Programs(options.programs) as programs:
             expected = Expected(programs, options.backend)
-    except BenchError as error:
+    except ClusterError as error:
         wrong_use(str(error))
     for seed in options.seeds:
         with Programs(options.programs) as programs:
             try:
                 run(seed, options, tessera, expected, programs)
-            except (ChaosError, BenchError, tessera.Error) as error:
+            except (ChaosError, ClusterError, tessera.Error) as error:
                 failed.append(seed)
                 print(f"seed {seed}: {type(error).__name__}: {error}\n"
                       f"  again: {sys.argv[0]} {options.programs} {options.python} --seeds {seed} --seconds {options.seconds:g} --verbose",

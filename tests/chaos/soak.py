@@ -25,8 +25,7 @@ from faults import draw_faults, draw_links
 from work import Editor
 from world import ChaosError, World
 
-from cluster import BenchError, Programs  # of the bench on the wire, like the next one
-from edits import load_package
+from cluster import ClusterError, Programs, load_package
 
 SECONDS_BETWEEN_SAMPLES = 2.0
 MEAN_GAP = 4.0  # s between two faults
@@ -130,13 +129,13 @@ def main():
     options = parser.parse_args()
     try:
         tessera = load_package(options.python)
-    except BenchError as error:
+    except ClusterError as error:
         wrong_use(str(error))
     try:
         with Programs(options.programs) as programs, World(programs, draw_links(options.seed, [*NODES, "editor"]),
                                                            options.backend) as world:
             samples, edits = soak(world, tessera, options)
-    except (ChaosError, BenchError, tessera.Error) as error:
+    except (ChaosError, ClusterError, tessera.Error) as error:
         print(f"\n{type(error).__name__}: {error}", file=sys.stderr)
         return 1
     sixths = [sixth(samples, number) for number in range(SIXTHS)]

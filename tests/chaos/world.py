@@ -8,7 +8,7 @@ import sys
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tests" / "bench" / "wire"), str(ROOT / "tests" / "python")]
+sys.path[:0] = [str(ROOT / "tests" / "process"), str(ROOT / "tests" / "python")]
 from cluster import tail  # noqa: E402
 from line import Line  # noqa: E402
 from ports import free_port  # noqa: E402

@@ -77,6 +77,7 @@ def options_exist(source: pathlib.Path, programs: pathlib.Path) -> bool:
     known |= options_of([sys.executable, str(source / "tests" / "fuzz" / "defects_test.py")])
     known |= options_of([sys.executable, str(source / "tests" / "chaos" / "chaos.py")])
     known |= options_of([sys.executable, str(source / "tests" / "chaos" / "soak.py")])
+    known |= options_of([sys.executable, str(source / "tests" / "chaos" / "slow.py")])
     known |= options_of([sys.executable, str(source / "tests" / "fuzz" / "decoders" / "run.py")])
     wrong = []
     has_bench = (programs / "tessera-bench").exists()

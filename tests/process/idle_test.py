@@ -11,9 +11,7 @@ import sys
 import time
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests" / "bench" / "wire"))
-from cluster import TICKS, Cluster, Programs, cpu_seconds, free_port  # noqa: E402
+from cluster import ROOT, TICKS, Cluster, Programs, cpu_seconds, free_port
 
 PROGRAMS = pathlib.Path(sys.argv.pop()).resolve()
 SCENE = ROOT / "tests" / "scenes" / "still.glb"
@@ -80,31 +78,46 @@ class IdleTest(unittest.TestCase):
         for child, status in waiting.items():
             self.assertEqual(child.wait(4), status, child.log.read_text())  # clients alone would wait for 10 s
 
+    def test_the_first_signal_ends_clients_that_have_lost_their_master(self):
+        cluster = self.cluster(0)
+        clients = [self.start_client(cluster, "render", SCENE, "-o", self.programs.scratch / "never.png"),
+                   self.start_client(cluster, "watch", "-o", self.programs.scratch / "never.png")]
+        time.sleep(START)
+        cluster.master.kill()
+        time.sleep(START)
+        for client in clients:
+            client.send_signal(signal.SIGTERM)
+        for client in clients:
+            self.assertEqual(client.wait(8), 130, client.log.read_text())  # it would look for its master for 30 s
+
+    def cluster(self, nodes):
+        """Ends after the clients that were started later."""
+        return self.enterContext(Cluster(self.programs, nodes, backend="null"))
+
+    def start_client(self, cluster, command, *options):
+        return self.start("tessera", command, *options, "--master", cluster.endpoint, "--keys", cluster.keys)
+
     def test_without_work(self):
-        with Cluster(self.programs, 1, backend="null") as cluster:
-            self.check(*cluster.children)
+        self.check(*self.cluster(1).children)
 
     def test_without_nodes(self):
-        with Cluster(self.programs, 0) as cluster:
-            render = self.start("tessera", "render", SCENE, "--master", cluster.endpoint, "--keys", cluster.keys, "-o",
-                                self.programs.scratch / "later.png")
-            self.check(render, *cluster.children)
+        cluster = self.cluster(0)
+        render = self.start_client(cluster, "render", SCENE, "-o", self.programs.scratch / "later.png")
+        self.check(render, *cluster.children)
 
     def test_with_a_live_scene_whose_frame_is_complete(self):
-        with Cluster(self.programs, 1, backend="null") as cluster:
-            watch = self.start("tessera", "watch", "--master", cluster.endpoint, "--keys", cluster.keys, "--size", "64x48", "--spp", "4",
-                               "-o", self.programs.scratch / "now.png")
-            self.check(watch, *cluster.children)
+        cluster = self.cluster(1)
+        watch = self.start_client(cluster, "watch", "--size", "64x48", "--spp", "4", "-o", self.programs.scratch / "now.png")
+        self.check(watch, *cluster.children)
 
     def test_while_workers_render(self):
         """Nodes hold film whose other half is being rendered."""
-        with Cluster(self.programs, 0) as cluster:
-            for i in range(2):
-                cluster.start_node(f"node-{i}", "--backend", "null", "--simulate-cost", "40us")
-            cluster.wait_for(2)
-            render = self.start("tessera", "render", SCENE, "--master", cluster.endpoint, "--keys", cluster.keys, "--size", "256x256",
-                                "--spp", "64", "-o", self.programs.scratch / "slow.png")
-            self.check(render, *cluster.children, most=2 * MOST, measure=loop_seconds)
+        cluster = self.cluster(0)
+        for i in range(2):
+            cluster.start_node(f"node-{i}", "--backend", "null", "--simulate-cost", "40us")
+        cluster.wait_for(2)
+        render = self.start_client(cluster, "render", SCENE, "--size", "256x256", "--spp", "64", "-o", self.programs.scratch / "slow.png")
+        self.check(render, *cluster.children, most=2 * MOST, measure=loop_seconds)
 
 
 if __name__ == "__main__":

@@ -9,10 +9,8 @@ import sys
 import time
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests" / "bench" / "wire"))
-from cluster import Cluster, Programs, free_port  # noqa: E402
-from line import Line  # noqa: E402
+from cluster import ROOT, Cluster, Programs, free_port
+from line import Line
 
 PROGRAMS = pathlib.Path(sys.argv.pop()).resolve()
 SCENE = ROOT / "tests" / "scenes" / "still.glb"
@@ -86,6 +84,9 @@ class LinksTest(unittest.TestCase):
                 report = self.finish(render)
                 self.assertIn("node far is gone: silent for too long", self.master_log())
                 self.assertGreater(report["units"]["reissued"], 0)
+                status = self.cluster.status()
+                self.assertGreater(status["lost_nodes"], 0)
+                self.assertGreater(sum(node["film_bytes"] for node in status["nodes"]), 0)
                 line.go_on()
                 self.wait_for_nodes("near", "far")
                 self.finish(self.start_render("--wait-nodes", "2:60"))
@@ -123,6 +124,7 @@ class LinksTest(unittest.TestCase):
         line.hold()
         self.wait_for(lambda status: status["sessions"] == 1, "the client is not given up")
         self.wait_for_work("near")  # its frame goes on
+        self.assertEqual(self.cluster.status()["lost_sessions"], 1)
         line.go_on()
         report = self.finish(render)
         self.assertEqual(sum(node["samples"] for node in report["nodes"]), SAMPLES, "something was rendered twice")

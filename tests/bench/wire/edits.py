@@ -6,7 +6,7 @@ import sys
 import threading
 import time
 
-from cluster import BenchError, Cluster
+from cluster import Cluster, ClusterError, load_package
 from line import Line
 
 EDITOR = "editor"
@@ -67,7 +67,7 @@ class Watcher(threading.Thread):
         while self.newest < version:
             cluster.check()
             if not self.is_alive() or time.monotonic() > until:
-                raise BenchError(f"no picture of the latest edit after {PATIENCE:g} s")
+                raise ClusterError(f"no picture of the latest edit after {PATIENCE:g} s")
             time.sleep(0.01)
 
 
@@ -80,7 +80,7 @@ class Edits:
         self._materials = list(scene.all(tessera.Material))
         self._transforms = [each for each in scene.all(tessera.Transform) if visible.intersection(each.children)]
         if not self._materials and not self._transforms:
-            raise BenchError("the scene has no materials and no transforms to edit: choose another one with --scene")
+            raise ClusterError("the scene has no materials and no transforms to edit: choose another one with --scene")
 
     def submit(self, i):
         with self._session.transaction() as edit:
@@ -100,22 +100,12 @@ def wait_for_clock(session):
         if any(member.name == EDITOR and member.clock_bound_seconds > 0 for member in session.members().members):
             return
         time.sleep(0.1)
-    raise BenchError(f"the master did not measure the clock of the editing client within {PATIENCE:g} s")
+    raise ClusterError(f"the master did not measure the clock of the editing client within {PATIENCE:g} s")
 
 
 def quoted(path):
     """As a word of an edit script."""
     return '"' + str(path).replace("\\", "\\\\").replace('"', '\\"') + '"'
-
-
-def load_package(folder):
-    sys.path.insert(0, str(folder))
-    try:
-        import tessera
-    except ImportError as error:
-        raise BenchError(f"the Python package 'tessera' cannot be used ({error}): build it (deploy/setup.sh), name its folder, "
-                         "as build/release/python, and run this script with /usr/bin/python3, which has python3-zmq and python3-protobuf") from error
-    return tessera
 
 
 def edit_for(options, edits, cluster, progress):
@@ -171,11 +161,11 @@ def measure(programs, options, backend, progress):
             figures = edit_and_watch(tessera, cluster, options, progress)
         except tessera.Error as error:
             cluster.check()  # the reason, if a process has ended
-            raise BenchError(f"the session with the master failed: {error}") from error
+            raise ClusterError(f"the session with the master failed: {error}") from error
         stages = json.loads(cluster.run("status", "--json", "--chrome-trace", path)[0])["live"]["stages"]
     found = durations(json.loads(path.read_text()), EDITOR)
     shown = [each for each in found if each is not None]
     if not len(shown) == len(found) == min(figures["edits"], TRACED_EDITS):
-        raise BenchError(f"of {figures['edits']} edits {len(found)} are in the master's trace, {len(shown)} of them with a picture")
+        raise ClusterError(f"of {figures['edits']} edits {len(found)} are in the master's trace, {len(shown)} of them with a picture")
     parts = {"p50_seconds": 0.50, "p95_seconds": 0.95, "p99_seconds": 0.99, "longest_seconds": 1.0}
     return {"backend": backend, **figures, **{name: percentile(shown, part) for name, part in parts.items()}, "stages": stages}

@@ -26,9 +26,10 @@ import sys
 import time
 
 sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "process"))
 import edits  # noqa: E402
 import renders  # noqa: E402
-from cluster import ROOT, BenchError, Programs  # noqa: E402
+from cluster import ROOT, ClusterError, Programs, load_package  # noqa: E402
 
 EXAMPLES = """\
 examples:
@@ -234,7 +235,7 @@ def measure_parts(programs, options, progress, report):
         progress.part = part
         try:
             found = MEASURE[part](programs, options, progress)
-        except BenchError as error:
+        except ClusterError as error:
             progress.clear()
             print(f"wire_bench: {part}: {error}", file=sys.stderr, flush=True)
             report["parts"][part] = {"error": str(error)}
@@ -257,7 +258,7 @@ def exit_status(report, options):
 
 def run(options, progress, report):
     if "edits" in options.parts:  # before an hour of renders
-        edits.load_package(options.python)
+        load_package(options.python)
     with Programs(options.bin) as programs:
         report.update({"software": programs.version(), "machine": machine(), "parts": {}})
         print(f"{report['software']}, {report['machine']}", flush=True)
@@ -275,7 +276,7 @@ def main():
     try:
         run(options, progress, report)
         status = exit_status(report, options)
-    except BenchError as error:
+    except ClusterError as error:
         print(f"wire_bench: {error}", file=sys.stderr)
     except KeyboardInterrupt:
         progress.clear()

@@ -13,9 +13,10 @@ import threading
 import time
 import unittest
 
-from cluster import ROOT, free_port
-from edits import durations, percentile
-from line import BURST_SECONDS, CHUNK, Line
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "process"))
+from cluster import ROOT, free_port  # noqa: E402
+from edits import durations, percentile  # noqa: E402
+from line import BURST_SECONDS, CHUNK, Line  # noqa: E402
 
 PYTHON = pathlib.Path(sys.argv.pop()).resolve()
 PROGRAMS = pathlib.Path(sys.argv.pop()).resolve()

@@ -1,4 +1,4 @@
-"""Master and nodes as processes with CURVE keys of their own, and the programs that a benchmark runs with them."""
+"""Master and nodes as processes with CURVE keys of their own, and the programs that a test or benchmark runs with them."""
 
 import json
 import os
@@ -9,7 +9,7 @@ import sys
 import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[3]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "python"))
 from ports import free_port  # noqa: E402
 
@@ -18,8 +18,8 @@ STOP_SECONDS = 5  # until a process that was asked to end is killed
 TICKS = os.sysconf("SC_CLK_TCK")
 
 
-class BenchError(Exception):
-    """Something could not be measured; the text says why and what helps."""
+class ClusterError(Exception):
+    """A program cannot be run, or has failed; the text says why and what helps."""
 
 
 def cpu_seconds(pid):
@@ -34,6 +34,17 @@ def tail(child, lines=8):
     return "\n".join("    " + line for line in child.log.read_text(errors="replace").strip().split("\n")[-lines:])
 
 
+def load_package(folder):
+    """The package `tessera` of a build."""
+    sys.path.insert(0, str(folder))
+    try:
+        import tessera
+    except ImportError as error:
+        raise ClusterError(f"the Python package 'tessera' cannot be used ({error}): build it (deploy/setup.sh), name its folder, as "
+                           "build/release/python, and run this script with /usr/bin/python3, which has python3-zmq and python3-protobuf") from error
+    return tessera
+
+
 class Programs:
     """The programs of one build, and everything that was started from it; ends all of it at the end of the with statement."""
 
@@ -43,7 +54,7 @@ class Programs:
         self.folder = pathlib.Path(folder).resolve()
         missing = [name for name in self.NEEDED if not os.access(self.folder / name, os.X_OK)]
         if missing:
-            raise BenchError(f"no {', '.join(missing)} in {self.folder}: build with deploy/setup.sh, or name the folder with --bin")
+            raise ClusterError(f"no {', '.join(missing)} in {self.folder}: build with deploy/setup.sh, or name the folder with --bin")
         self._temporary = tempfile.TemporaryDirectory(prefix="tessera-wire-")
         self.scratch = pathlib.Path(self._temporary.name)
         self._children, self._logs = [], 0
@@ -91,7 +102,7 @@ class Programs:
         child.returncode = os.waitstatus_to_exitcode(status)
         self._children.remove(child)
         if child.returncode != 0:
-            raise BenchError(f"tessera {words[0]} failed with status {child.returncode}:\n{tail(child)}")
+            raise ClusterError(f"tessera {words[0]} failed with status {child.returncode}:\n{tail(child)}")
         return out, usage.ru_utime + usage.ru_stime
 
     def version(self):
@@ -161,14 +172,14 @@ class Cluster:
         return json.loads(self.run("status", "--json")[0])
 
     def cpu_seconds(self):
-        """Of master and nodes since their start. Raises BenchError if one of them has ended."""
+        """Of master and nodes since their start. Raises ClusterError if one of them has ended."""
         self.check()
         return sum(cpu_seconds(child.pid) for child in self._children)
 
     def check(self):
         for child in self._children:
             if child.poll() is not None:
-                raise BenchError(f"{child.program} ended with status {child.returncode}:\n{tail(child)}")
+                raise ClusterError(f"{child.program} ended with status {child.returncode}:\n{tail(child)}")
 
     def _start_master(self):
         """Another process may take a port between its choice and its use, so a master that ends is started at another one."""
@@ -184,7 +195,7 @@ class Cluster:
                     return port
                 time.sleep(0.02)
             self.programs.stop([master])
-        raise BenchError(f"the master does not start:\n{tail(master)}")
+        raise ClusterError(f"the master does not start:\n{tail(master)}")
 
     def wait_for(self, nodes):
         """Until so many nodes have joined."""
@@ -194,4 +205,4 @@ class Cluster:
             if len(self.status()["nodes"]) == nodes:
                 return
             time.sleep(0.1)
-        raise BenchError(f"{nodes} nodes did not join within {START_SECONDS} s:\n{tail(self._children[-1])}")
+        raise ClusterError(f"{nodes} nodes did not join within {START_SECONDS} s:\n{tail(self._children[-1])}")
