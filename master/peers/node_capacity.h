@@ -12,6 +12,7 @@ struct NodeCapacity {
     std::uint32_t workers = 1;
     std::uint32_t free_slots = 0;
     std::uint32_t in_flight = 0;
+    double round_trip_seconds = 0.0;  // of messages; 0 = not known
 };
 
 }  // namespace tessera::master

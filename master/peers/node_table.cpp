@@ -21,7 +21,8 @@ NodeCapacity NodeRecord::capacity() const {
     return {.node = id,
             .workers = workers,
             .free_slots = slots > on_the_way ? slots - on_the_way : 0,
-            .in_flight = static_cast<std::uint32_t>(state.in_flight.size()) + on_the_way};
+            .in_flight = static_cast<std::uint32_t>(state.in_flight.size()) + on_the_way,
+            .round_trip_seconds = round_trip_seconds};
 }
 
 std::optional<wire::OpenView> NodeRecord::opening(const view::View& view, Duration hold_film) {

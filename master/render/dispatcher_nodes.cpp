@@ -4,6 +4,7 @@
 
 #include "master/peers/suitable_nodes.h"
 #include "master/render/dispatcher.h"
+#include "master/render/schedule/stuck_allowance.h"
 
 namespace tessera::master {
 
@@ -260,11 +261,7 @@ Duration Dispatcher::allowance(NodeId node) const {
     const StuckSettings& settings = nodes_.stuck();
     const double rate = balancer_.rate(node);
     const auto predicted = [&](const Rect& tile, const frame::SampleBlock& block) {
-        constexpr double MaxSeconds = 86400.0;
-        if (rate <= 0.0) return settings.first_film;
-        const auto samples = static_cast<double>(block.count() * tile.pixel_count());
-        return std::chrono::duration_cast<Duration>(
-            std::chrono::duration<double>(std::min(MaxSeconds, settings.predicted_times * samples / rate)));
+        return stuck_allowance(settings, rate, block.count() * tile.pixel_count());
     };
     Duration longest{};
     for (const auto& [view, pass] : passes_) {

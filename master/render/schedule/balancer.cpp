@@ -22,12 +22,9 @@ double Balancer::assumed_rate(NodeId node) const {
     return measured_rate > 0.0 ? measured_rate : settings_.first_samples / settings_.unit_seconds;
 }
 
-std::uint64_t Balancer::unit_samples(NodeId node, std::uint64_t remaining, std::uint32_t workers) const {
-    const double measured_rate = rate(node);
-    const double wanted =
-        measured_rate > 0.0 ? measured_rate * settings_.unit_seconds : settings_.first_samples;
-    const double fair = static_cast<double>(remaining) / (2.0 * std::max(workers, 1u));
-    return static_cast<std::uint64_t>(std::max(1.0, std::min(wanted, fair)));
+std::uint64_t Balancer::unit_samples(NodeId node, double left) const {
+    const double time = std::min(settings_.unit_seconds, 0.5 * left);
+    return static_cast<std::uint64_t>(std::max(1.0, assumed_rate(node) * time));
 }
 
 }  // namespace tessera::master

@@ -27,9 +27,9 @@ class Balancer {
     double assumed_rate(NodeId node) const;  // the same; not measured: that of a first unit in `unit_seconds`
     double unit_seconds() const { return settings_.unit_seconds; }
 
-    // Pixel samples for the node's next unit. Shrinks when little is left (`remaining` over `workers` in the
-    // whole cluster), so that all finish together: never more than half of an equal part.
-    std::uint64_t unit_samples(NodeId node, std::uint64_t remaining, std::uint32_t workers) const;
+    // Pixel samples for the node's next unit. Shrinks when all nodes together need no more than `left` s for what has
+    // not been dealt, so that all finish together: it takes half of that at most.
+    std::uint64_t unit_samples(NodeId node, double left) const;
 
   private:
     Settings settings_;

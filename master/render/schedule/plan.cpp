@@ -66,24 +66,30 @@ Plan::Plan(const PlanSettings& settings)
                      [&](std::uint32_t a, std::uint32_t b) { return distance(a) < distance(b); });
 }
 
-std::uint64_t Plan::claim_samples(const SampleBlock& round, std::uint32_t nodes,
+// `max_count`: of a unit. Shorter units than a fifth of that would be rendered before the next ones have crossed the
+// network, however many a node has in hand.
+std::uint64_t Plan::claim_samples(const SampleBlock& round, std::uint64_t max_count, std::uint32_t nodes,
                                   std::uint32_t workers) const {
-    std::uint64_t parts = 1;
+    constexpr std::uint64_t ShortestPart = 5;
+    std::uint64_t parts = 1, least = 1;
     if (settings_.policy == session::Policy::Cooperative) {
         parts = std::bit_ceil(std::max(nodes, 2u));
+        least = std::clamp<std::uint64_t>(max_count / ShortestPart, 1, round.count());
     } else if (settings_.policy == session::Policy::Mixed && tiles_.size() < workers) {
         const auto tiles = static_cast<std::uint32_t>(tiles_.size());
         parts = std::bit_ceil((workers + tiles - 1) / tiles);
     }
-    return std::max<std::uint64_t>(1, round.count() / parts);
+    return std::max(least, round.count() / parts);
 }
 
-std::optional<Plan::Claim> Plan::new_claim(std::uint32_t nodes, std::uint32_t workers) {
+std::optional<Plan::Claim> Plan::new_claim(std::uint64_t max_count, std::uint32_t nodes,
+                                           std::uint32_t workers) {
     if (round_ == rounds_.size() || is_held()) return std::nullopt;
     const SampleBlock round = rounds_[round_];
     const std::uint32_t tile = order_[cursor_];
     const std::uint64_t first = round.first + offset_;
-    const SampleBlock block = first_piece(first, round.end(), claim_samples(round, nodes, workers));
+    const SampleBlock block =
+        first_piece(first, round.end(), claim_samples(round, max_count, nodes, workers));
     advance(block.count());
     return Claim{tile, block.first, block.end()};
 }
@@ -108,7 +114,7 @@ std::optional<Plan::Chunk> Plan::next(NodeId node, std::uint64_t max_count, std:
                                       std::uint32_t workers) {
     auto claimed = claims_.find(node);
     if (claimed == claims_.end()) {
-        const std::optional<Claim> claim = new_claim(nodes, workers);
+        const std::optional<Claim> claim = new_claim(max_count, nodes, workers);
         if (!claim) return std::nullopt;
         claimed = claims_.emplace(node, *claim).first;
     }

@@ -31,7 +31,7 @@ struct PlanSettings {
 // consecutive pieces before it sends their film, so a claim costs the network one film, however short its pieces are.
 // The policy says how large claims are:
 //   tiled        a tile's part of a round
-//   cooperative  a part of that for each node, so that all nodes work on the same tile
+//   cooperative  a part of that for each node, so that all nodes work on the same tile; but no less than a fifth of a unit
 //   mixed        tiled as long as there are enough tiles for all workers, else cooperative
 // What is left of a claim can be taken over by another node. Pure; the same calls give the same chunks.
 class Plan {
@@ -91,9 +91,9 @@ class Plan {
 
   private:
     bool is_held() const { return rounds_[round_].first >= hold_; }
-    std::uint64_t claim_samples(const frame::SampleBlock& round, std::uint32_t nodes,
+    std::uint64_t claim_samples(const frame::SampleBlock& round, std::uint64_t max_count, std::uint32_t nodes,
                                 std::uint32_t workers) const;
-    std::optional<Claim> new_claim(std::uint32_t nodes, std::uint32_t workers);
+    std::optional<Claim> new_claim(std::uint64_t max_count, std::uint32_t nodes, std::uint32_t workers);
     void advance(std::uint64_t count);
     void next_tile();
     void skip_closed();

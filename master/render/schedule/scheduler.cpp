@@ -6,15 +6,28 @@ namespace tessera::master {
 
 using frame::SampleBlock;
 
-namespace {
+// What does not change while units are dealt.
+struct Scheduler::Turn {
+    Turn(std::span<const NodeCapacity> all, const Balancer& rates, TimePoint time)
+        : nodes(all), balancer(rates), now(time) {
+        for (const NodeCapacity& node : nodes) {
+            workers += node.workers;
+            rate += node.workers * balancer.rate(node.node);
+            assumed_rate += node.workers * balancer.assumed_rate(node.node);
+        }
+    }
+    const NodeCapacity* find(NodeId id) const {
+        const auto node = std::ranges::find(nodes, id, &NodeCapacity::node);
+        return node == nodes.end() ? nullptr : &*node;
+    }
 
-std::uint32_t workers_of(std::span<const NodeCapacity> nodes) {
+    std::span<const NodeCapacity> nodes;
+    const Balancer& balancer;
+    TimePoint now;
     std::uint32_t workers = 0;
-    for (const NodeCapacity& node : nodes) workers += node.workers;
-    return workers;
-}
-
-}  // namespace
+    double rate = 0.0, assumed_rate = 0.0;  // pixel samples per second of all
+    std::optional<Forecast> forecast;       // made when it is needed
+};
 
 Scheduler::Scheduler(const PlanSettings& plan, ViewId view, std::uint64_t revision, Version version,
                      UnitId first_unit, std::optional<TimePoint> deadline)
@@ -41,18 +54,20 @@ std::vector<Assignment> Scheduler::assign(std::span<const NodeCapacity> nodes, c
     std::vector<Assignment> assignments;
     if (closed_) return assignments;
     release_claims_of_others(nodes);
+    Turn turn(nodes, balancer, now);
     std::vector<NodeCapacity> capacities(nodes.begin(), nodes.end());
     // One unit per turn, so that one node's prefetch does not empty the plan while another starves.
     for (bool dealt = true; dealt;) {
         dealt = false;
         for (NodeCapacity& node : capacities) {
-            if (node.free_slots == 0) continue;
-            cut_round_for_deadline(nodes, balancer, now);
-            auto assignment = deal(node, nodes, balancer, now);
-            if (!assignment && node.in_flight < node.workers)
-                assignment = duplicate(node.node, nodes, balancer, now);
+            if (!may_take_more(node, turn)) continue;
+            cut_round_for_deadline(turn);
+            auto assignment = deal_overdue(node, turn);
+            if (!assignment) assignment = deal(node, turn);
+            const bool has_idle_worker = node.in_flight < node.workers || node.free_slots > node.workers;
+            if (!assignment && has_idle_worker) assignment = duplicate(node, turn, 0.0);
             if (!assignment) continue;
-            --node.free_slots;
+            node.free_slots -= std::min(node.free_slots, 1u);
             ++node.in_flight;
             assignments.push_back(std::move(*assignment));
             dealt = true;
@@ -61,9 +76,30 @@ std::vector<Assignment> Scheduler::assign(std::span<const NodeCapacity> nodes, c
     return assignments;
 }
 
-std::optional<Assignment> Scheduler::deal(const NodeCapacity& node, std::span<const NodeCapacity> nodes,
-                                          const Balancer& balancer, TimePoint now) {
-    while (auto chunk = next_chunk(node, nodes, balancer)) {
+// Its workers must not wait for the network, so it has work in hand for that time and a unit more. Two units for each
+// worker are enough for that, which the node grants itself, unless they are short.
+bool Scheduler::may_take_more(const NodeCapacity& node, const Turn& turn) const {
+    constexpr std::size_t MaxBeyondSlots = 32;  // node/work_queue.h takes 64
+    if (node.free_slots > 0) return true;
+    const UnitLedger::Load load = ledger_.load(node.node);
+    if (node.in_flight > load.units || load.units >= 2 * node.workers + MaxBeyondSlots) return false;
+    const double time =
+        node.round_trip_seconds + std::min(turn.balancer.unit_seconds(), 0.5 * seconds_left(turn));
+    return static_cast<double>(load.samples) < time * node.workers * turn.balancer.rate(node.node);
+}
+
+// All nodes together, for what has not been dealt.
+double Scheduler::seconds_left(const Turn& turn) const {
+    return turn.assumed_rate > 0.0 ? static_cast<double>(plan_.remaining_samples()) / turn.assumed_rate : 0.0;
+}
+
+const Forecast& Scheduler::forecast(Turn& turn) const {
+    if (!turn.forecast) turn.forecast.emplace(ledger_, turn.nodes, turn.balancer, turn.now);
+    return *turn.forecast;
+}
+
+std::optional<Assignment> Scheduler::deal(const NodeCapacity& node, Turn& turn) {
+    while (auto chunk = next_chunk(node, turn)) {
         // Film that was considered lost may have arrived after all.
         const std::vector<SampleBlock> gaps = ledger_.samples(chunk->tile).missing_in(chunk->block);
         if (gaps.size() != 1 || gaps.front() != chunk->block) {
@@ -76,7 +112,7 @@ std::optional<Assignment> Scheduler::deal(const NodeCapacity& node, std::span<co
         }
         const view::WorkUnit unit = make_unit(*chunk);
         ++(chunk->again ? reissued_ : issued_);
-        ledger_.deal(unit, chunk->tile, std::move(chunk->trouble), node.node, now);
+        ledger_.deal(unit, chunk->tile, std::move(chunk->trouble), node.node, turn.now);
         return Assignment{node.node, unit};
     }
     return std::nullopt;
@@ -107,45 +143,58 @@ class Scheduler::DoubtfulTiles {
     std::set<std::uint32_t> waiting_;
 };
 
-std::optional<Plan::Chunk> Scheduler::next_chunk(const NodeCapacity& node,
-                                                 std::span<const NodeCapacity> nodes,
-                                                 const Balancer& balancer) {
-    const std::uint32_t workers = workers_of(nodes);
-    const std::uint64_t samples = balancer.unit_samples(node.node, plan_.remaining_samples(), workers);
+// A slow node would, with samples that go to one node at a time.
+bool Scheduler::keeps_others_waiting(const NodeCapacity& node, const Plan::Chunk& chunk,
+                                     const Turn& turn) const {
+    if (ledger_.lives(chunk.trouble) == 0) return false;
+    double fastest = 0.0;
+    for (const NodeCapacity& other : turn.nodes) {
+        if (!chunk.trouble->has_failed_on(other.node))
+            fastest = std::max(fastest, turn.balancer.rate(other.node));
+    }
+    return turn.balancer.rate(node.node) < 0.5 * fastest;
+}
+
+std::optional<Plan::Chunk> Scheduler::next_chunk(const NodeCapacity& node, Turn& turn) {
+    const std::uint64_t samples = turn.balancer.unit_samples(node.node, seconds_left(turn));
     const std::size_t pixels =
         std::max<std::size_t>(1, plan_.tiles().empty() ? 1 : plan_.tiles()[0].pixel_count());
     const std::uint64_t count = std::max<std::uint64_t>(1, samples / pixels);
-    const DoubtfulTiles doubtful(*this, node.node);
-    // What failed on a node goes to another one, unless there is none.
-    const auto may_go = [&](const Plan::Chunk& chunk) {
-        if (!doubtful.may_go(chunk)) return false;
-        return !chunk.trouble || !chunk.trouble->has_failed_on(node.node) ||
-               std::all_of(nodes.begin(), nodes.end(), [&](const NodeCapacity& other) {
-                   return chunk.trouble->has_failed_on(other.node);
-               });
-    };
-    if (auto chunk = plan_.next_returned(count, may_go)) return chunk;
-    const auto node_count = static_cast<std::uint32_t>(nodes.size());
-    if (auto chunk = plan_.next(node.node, count, node_count, workers)) return chunk;
-    if (!take_over_a_claim(node, nodes, balancer)) return std::nullopt;
-    return plan_.next(node.node, count, node_count, workers);
+    const auto node_count = static_cast<std::uint32_t>(turn.nodes.size());
+    for (;;) {
+        if (!plan_.returned().empty()) {
+            const DoubtfulTiles doubtful(*this, node.node);
+            // What failed on a node goes to another one, unless there is none.
+            const auto may_go = [&](const Plan::Chunk& chunk) {
+                if (!doubtful.may_go(chunk) || keeps_others_waiting(node, chunk, turn)) return false;
+                return !chunk.trouble || !chunk.trouble->has_failed_on(node.node) ||
+                       std::ranges::all_of(turn.nodes, [&](const NodeCapacity& other) {
+                           return chunk.trouble->has_failed_on(other.node);
+                       });
+            };
+            if (auto chunk = plan_.next_returned(count, may_go)) return chunk;
+        }
+        if (auto chunk = plan_.next(node.node, count, node_count, turn.workers)) return chunk;
+        if (!take_over_a_claim(node, turn)) return std::nullopt;
+    }
 }
 
 // No samples are left to claim: an idle node takes a part of the claim that would be finished last, if that is sooner.
-bool Scheduler::take_over_a_claim(const NodeCapacity& node, std::span<const NodeCapacity> nodes,
-                                  const Balancer& balancer) {
+bool Scheduler::take_over_a_claim(const NodeCapacity& node, Turn& turn) {
     // Each part costs the network one more film: the last units are not split, but dealt twice if they are late.
-    const double min_seconds = 2.0 * balancer.unit_seconds();
+    const double min_seconds = 0.5 * turn.balancer.unit_seconds();
     NodeId victim;
     double latest = 0.0;
     for (const auto& [holder, claim] : plan_.claims()) {
-        const auto capacity = std::find_if(nodes.begin(), nodes.end(), [holder = holder](const auto& other) {
-            return other.node == holder;
-        });
-        if (holder == node.node || capacity == nodes.end()) continue;
+        const NodeCapacity* capacity = turn.find(holder);
+        if (holder == node.node || capacity == nullptr) continue;
+        if (forecast(turn).is_late(holder)) {
+            plan_.release_claim(holder);
+            return true;
+        }
         const auto left = static_cast<double>(claim.left() * plan_.tiles()[claim.tile].pixel_count());
-        const double duration = left / (balancer.assumed_rate(holder) * capacity->workers);
-        const double mine = 0.5 * left / (balancer.assumed_rate(node.node) * node.workers);
+        const double duration = left / (turn.balancer.assumed_rate(holder) * capacity->workers);
+        const double mine = 0.5 * left / (turn.balancer.assumed_rate(node.node) * node.workers);
         if (duration < min_seconds || mine > duration || duration <= latest) continue;
         latest = duration;
         victim = holder;
@@ -166,86 +215,50 @@ void Scheduler::release_claims_of_others(std::span<const NodeCapacity> nodes) {
     for (const NodeId node : released) plan_.release_claim(node);
 }
 
-// When each holder will have rendered its units, in s from now, as far as rates tell: it renders them in the order in
-// which it got them, and sends the film of consecutive ones together after the last.
-class Scheduler::Forecast {
-  public:
-    static constexpr double Never = 1e9;
-
-    Forecast(const UnitLedger& ledger, std::span<const NodeCapacity> nodes, const Balancer& balancer,
-             TimePoint now) {
-        std::map<NodeId, std::uint32_t> workers;
-        for (const NodeCapacity& node : nodes) workers[node.node] = std::max(1u, node.workers);
-        for (const auto& [id, unit] : ledger.open()) {
-            for (const auto& [holder, since] : unit.holders) {
-                const double expected = expected_seconds(balancer, holder, unit.unit);
-                Holder& all = holders_[holder];
-                const double start = std::max(all.busy_until, -seconds(now - since));
-                all.busy_until = start + expected / std::max(1u, workers[holder]);
-                all.last_end = std::max(all.last_end, start + expected);
-                all.total += expected;
-                ends_[{id, holder}] = start + expected;
-            }
-        }
-    }
-
-    // Overdue work counts as never.
-    double end(UnitId unit, NodeId holder) const {
-        const Holder& all = holders_.at(holder);
-        const bool is_overdue = -all.last_end > 2.0 * all.total + 0.05;
-        return is_overdue ? Never : ends_.at({unit, holder});
-    }
-
-    static double expected_seconds(const Balancer& balancer, NodeId node, const view::WorkUnit& unit) {
-        const double rate = balancer.rate(node);
-        const auto samples = static_cast<double>(unit.block.count() * unit.tile.pixel_count());
-        return rate > 0.0 ? samples / rate : 0.0;
-    }
-
-  private:
-    struct Holder {
-        double busy_until = -Never, last_end = -Never, total = 0.0;
-    };
-    std::map<NodeId, Holder> holders_;
-    std::map<std::pair<UnitId, NodeId>, double> ends_;
-};
-
-std::optional<Assignment> Scheduler::duplicate(NodeId node, std::span<const NodeCapacity> nodes,
-                                               const Balancer& balancer, TimePoint now) {
-    const Forecast forecast(ledger_, nodes, balancer, now);
-    const view::WorkUnit* best = nullptr;
-    double latest = 0.0;
-    for (const auto& [id, unit] : ledger_.open()) {
-        const bool has_failed_here = unit.trouble && unit.trouble->has_failed_on(node);
-        if (unit.is_covered || unit.holders.contains(node) || has_failed_here) continue;
-        if (ledger_.lives(unit.trouble) > 0) continue;  // one node at a time: see DoubtfulTiles
-        double done = Forecast::Never;                  // by the first of its holders
-        for (const auto& [holder, since] : unit.holders) done = std::min(done, forecast.end(id, holder));
-        if (unit.holders.size() > 1 && done < Forecast::Never) continue;
-        // Take the unit that the slowest holder was given last: the least likely to have been started. It splits the
-        // film of its claim in three: that has to gain a unit's time.
-        const double mine = Forecast::expected_seconds(balancer, node, unit.unit);
-        if (done > mine + balancer.unit_seconds() && done >= latest) {
-            best = &unit.unit;
-            latest = done;
-        }
-    }
-    if (best == nullptr) return std::nullopt;
-    ++reissued_;
-    const view::WorkUnit unit = *best;
-    ledger_.deal_again(unit.id, node, now);
-    return Assignment{node, unit};
+// A unit that is far overdue, if it takes this node as long as all nodes take for what has not been dealt. Otherwise a slow
+// node might take it when nothing else is left, and end after all others.
+std::optional<Assignment> Scheduler::deal_overdue(const NodeCapacity& node, Turn& turn) {
+    const double left = seconds_left(turn);
+    const bool is_near_the_end = left > 0.0 && left < 10.0 * turn.balancer.unit_seconds();
+    return is_near_the_end ? duplicate(node, turn, left) : std::nullopt;
 }
 
-void Scheduler::cut_round_for_deadline(std::span<const NodeCapacity> nodes, const Balancer& balancer,
-                                       TimePoint now) {
-    if (!deadline_ || !plan_.at_round_start()) return;
-    double rate = 0.0;
-    for (const NodeCapacity& node : nodes) rate += node.workers * balancer.rate(node.node);
-    if (rate <= 0.0) return;
-    const double needed = static_cast<double>(plan_.round_samples()) / rate;
+// The unit whose film will arrive last, if this node's would arrive sooner. It splits the film of its claim in three: that
+// has to gain some time. `left`: if that many seconds of other work are left, only what deal_overdue() is about.
+std::optional<Assignment> Scheduler::duplicate(const NodeCapacity& node, Turn& turn, double left) {
+    const double gain = 0.5 * turn.balancer.unit_seconds(), overdue = 5.0 * turn.balancer.unit_seconds();
+    const std::vector<Forecast::Awaited>& awaited = forecast(turn).awaited();
+    std::optional<std::size_t> best;
+    double latest = 0.0;
+    for (std::size_t i = 0; i < awaited.size(); ++i) {
+        const auto& [unit, done, all_are_late] = awaited[i];
+        if (done < latest || (unit->holders.size() > 1 && !all_are_late)) continue;
+        if (unit->holders.contains(node.node) || (unit->trouble && unit->trouble->has_failed_on(node.node)))
+            continue;
+        // Samples that may have cost a node go to one node at a time, see DoubtfulTiles, unless that has become slow.
+        const std::size_t lives = ledger_.lives(unit->trouble);
+        if (lives > 1 || (lives == 1 && !all_are_late)) continue;
+        const std::uint64_t samples = unit->unit.block.count() * unit->unit.tile.pixel_count();
+        const double mine = Forecast::expected_seconds(turn.balancer, node, samples);
+        if (done <= mine + gain) continue;
+        const bool fits = left <= mine && mine <= left + turn.balancer.unit_seconds();
+        if (left > 0.0 && (!all_are_late || done < overdue || !fits)) continue;
+        best = i;
+        latest = done;
+    }
+    if (!best) return std::nullopt;
+    ++reissued_;
+    const view::WorkUnit unit = awaited[*best].unit->unit;
+    ledger_.deal_again(unit.id, node.node, turn.now);
+    turn.forecast->dealt_again(*best, 0.0);
+    return Assignment{node.node, unit};
+}
+
+void Scheduler::cut_round_for_deadline(const Turn& turn) {
+    if (!deadline_ || !plan_.at_round_start() || turn.rate <= 0.0) return;
+    const double needed = static_cast<double>(plan_.round_samples()) / turn.rate;
     // In seconds: with the rate that a node claims it may be centuries.
-    if (needed > seconds(*deadline_ - now)) plan_.deal_round_in_eighths();
+    if (needed > seconds(*deadline_ - turn.now)) plan_.deal_round_in_eighths();
 }
 
 // ---- ends ----

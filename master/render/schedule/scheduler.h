@@ -7,6 +7,7 @@
 
 #include "master/peers/node_capacity.h"
 #include "master/render/schedule/balancer.h"
+#include "master/render/schedule/forecast.h"
 #include "master/render/schedule/plan.h"
 #include "master/render/schedule/unit_ledger.h"
 #include "mediator/view/work_unit.h"
@@ -89,19 +90,20 @@ class Scheduler {
     session::UnitCounts counts() const;
 
   private:
-    view::WorkUnit make_unit(const Plan::Chunk& chunk) const;
-    std::optional<Assignment> deal(const NodeCapacity& node, std::span<const NodeCapacity> nodes,
-                                   const Balancer& balancer, TimePoint now);
-    std::optional<Plan::Chunk> next_chunk(const NodeCapacity& node, std::span<const NodeCapacity> nodes,
-                                          const Balancer& balancer);
-    bool take_over_a_claim(const NodeCapacity& node, std::span<const NodeCapacity> nodes,
-                           const Balancer& balancer);
+    struct Turn;  // of assign()
     class DoubtfulTiles;
-    class Forecast;
-    std::optional<Assignment> duplicate(NodeId node, std::span<const NodeCapacity> nodes,
-                                        const Balancer& balancer, TimePoint now);
+    view::WorkUnit make_unit(const Plan::Chunk& chunk) const;
+    bool may_take_more(const NodeCapacity& node, const Turn& turn) const;
+    std::optional<Assignment> deal(const NodeCapacity& node, Turn& turn);
+    std::optional<Plan::Chunk> next_chunk(const NodeCapacity& node, Turn& turn);
+    bool keeps_others_waiting(const NodeCapacity& node, const Plan::Chunk& chunk, const Turn& turn) const;
+    bool take_over_a_claim(const NodeCapacity& node, Turn& turn);
+    std::optional<Assignment> deal_overdue(const NodeCapacity& node, Turn& turn);
+    std::optional<Assignment> duplicate(const NodeCapacity& node, Turn& turn, double left);
+    double seconds_left(const Turn& turn) const;
+    const Forecast& forecast(Turn& turn) const;
     void release_claims_of_others(std::span<const NodeCapacity> nodes);
-    void cut_round_for_deadline(std::span<const NodeCapacity> nodes, const Balancer& balancer, TimePoint now);
+    void cut_round_for_deadline(const Turn& turn);
     void collect_returned();
 
     Plan plan_;

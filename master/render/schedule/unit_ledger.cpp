@@ -34,6 +34,10 @@ bool intersect(const SampleBlock& a, const SampleBlock& b) {
     return a.contains(b) || b.contains(a);
 }
 
+std::uint64_t pixel_samples(const view::WorkUnit& unit) {
+    return unit.block.count() * unit.tile.pixel_count();
+}
+
 bool holds_or_held(const UnitLedger::Unit& unit, NodeId node) {
     return unit.holders.contains(node) ||
            std::find(unit.past_holders.begin(), unit.past_holders.end(), node) != unit.past_holders.end();
@@ -53,7 +57,9 @@ UnitLedger::UnitLedger(std::vector<Rect> tiles, UnitId first_unit)
 
 void UnitLedger::hold(UnitId id, Unit& unit, NodeId node, TimePoint now) {
     unit.holders.emplace(node, now);
-    by_node_[node].insert(id);
+    Held& held = by_node_[node];
+    held.units.insert(id);
+    held.samples += pixel_samples(unit.unit);
     ++in_flight_;
 }
 
@@ -155,7 +161,9 @@ void UnitLedger::close(std::map<UnitId, Unit>::iterator entry, NodeId node, Fate
     const UnitId id = entry->first;
     if (unit.holders.erase(node) > 0) {
         count(counts_, fate);
-        by_node_[node].erase(id);
+        Held& held = by_node_[node];
+        held.units.erase(id);
+        held.samples -= pixel_samples(unit.unit);
         --in_flight_;
         unit.past_holders.push_back(node);
         if (observer_) observer_(unit.unit, node, fate);
@@ -267,8 +275,9 @@ bool UnitLedger::others_have_doubtful(std::uint32_t tile, NodeId node) const {
 
 bool UnitLedger::holds_suspect(NodeId node) const {
     const auto held = by_node_.find(node);
-    return held != by_node_.end() &&
-           std::ranges::any_of(held->second, [&](UnitId unit) { return is_suspect(open_.at(unit).trouble); });
+    return held != by_node_.end() && std::ranges::any_of(held->second.units, [&](UnitId unit) {
+               return is_suspect(open_.at(unit).trouble);
+           });
 }
 
 std::vector<Cancellation> UnitLedger::end_all() {
@@ -316,7 +325,12 @@ std::vector<Cancellation> UnitLedger::holders() const {
 std::vector<UnitId> UnitLedger::held_by(NodeId node) const {
     const auto units = by_node_.find(node);
     if (units == by_node_.end()) return {};
-    return {units->second.begin(), units->second.end()};
+    return {units->second.units.begin(), units->second.units.end()};
+}
+
+UnitLedger::Load UnitLedger::load(NodeId node) const {
+    const auto held = by_node_.find(node);
+    return held == by_node_.end() ? Load{} : Load{held->second.units.size(), held->second.samples};
 }
 
 }  // namespace tessera::master

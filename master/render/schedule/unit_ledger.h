@@ -142,6 +142,11 @@ class UnitLedger {
     const std::map<UnitId, Unit>& open() const { return open_; }
     std::vector<Cancellation> holders() const;  // of all open units
     std::vector<UnitId> held_by(NodeId node) const;
+    struct Load {
+        std::size_t units = 0;
+        std::uint64_t samples = 0;  // pixel samples
+    };
+    Load load(NodeId node) const;  // all that it holds
     std::uint32_t unexplained_failures(NodeId node) const;
     const BlockSet& samples(std::uint32_t tile) const { return arrived_[tile]; }
     bool is_idle() const { return uncovered_ == 0; }                    // no samples are awaited
@@ -173,7 +178,11 @@ class UnitLedger {
     std::map<UnitId, Unit>
         former_;  // ended before all samples had arrived: film may still be under way. Bounded
     std::vector<std::vector<UnitId>> open_of_tile_, former_of_tile_;
-    std::map<NodeId, std::set<UnitId>> by_node_;
+    struct Held {
+        std::set<UnitId> units;
+        std::uint64_t samples = 0;
+    };
+    std::map<NodeId, Held> by_node_;
     std::vector<BlockSet> arrived_;  // by tile
     std::set<std::shared_ptr<const UnitTrouble>> unexplained_;
     std::set<NodeId> lost_;  // and nothing explains it yet

@@ -92,10 +92,18 @@ PlanSettings two_tiles(session::Policy policy) {
 
 TEST(Plan, CooperativeSplitsATileAmongAllNodes) {
     Plan plan(two_tiles(session::Policy::Cooperative));
-    const auto first = plan.next(NodeId{1}, 1000, 4, 4), second = plan.next(NodeId{2}, 1000, 4, 4);
+    const auto first = plan.next(NodeId{1}, 16, 4, 4), second = plan.next(NodeId{2}, 16, 4, 4);
     EXPECT_EQ(first->tile, second->tile);
     EXPECT_EQ(first->block.count(), 4u);
     EXPECT_EQ(second->block.first, 4u);
+}
+
+// Else the network would take longer to bring the next one than the node to render it.
+TEST(Plan, CooperativeGivesNoNodeLessThanAFifthOfAUnit) {
+    Plan plan(two_tiles(session::Policy::Cooperative));
+    EXPECT_EQ(plan.next(NodeId{1}, 40, 4, 4)->block.count(), 8u);
+    EXPECT_EQ(plan.next(NodeId{2}, 1000, 4, 4)->block, (SampleBlock{8, 3})) << "no more than is left";
+    EXPECT_EQ(plan.next(NodeId{3}, 1000, 4, 4)->block.count(), 16u);
 }
 
 TEST(Plan, TiledGivesATileToOneNode) {
