@@ -71,7 +71,7 @@ void Dispatcher::deal(ViewId id, std::vector<NodeCapacity>& capacities, TimePoin
         send_work(node, pass->view, pass->hold_film, assignment.unit);
         for (NodeCapacity& capacity : capacities) {
             if (capacity.node != assignment.node) continue;
-            --capacity.free_slots;
+            capacity.free_slots -= std::min(capacity.free_slots, 1u);  // short units go beyond them
             ++capacity.in_flight;
         }
     }

@@ -153,6 +153,29 @@ TEST_F(DispatcherTest, PassesShareTheNodesSlots) {
     EXPECT_EQ(channel.all<wire::Work>().size(), 3u) << "as many as the node has slots";
 }
 
+// Where units are short, a node has more of them in hand than it has slots: enough for the way to the master and back.
+TEST_F(DispatcherTest, ShortUnitsGoBeyondTheSlotsOfANodeButNotWithoutEnd) {
+    NodeRecord& node = add_node(1, 1);
+    node.round_trip_seconds = 10.0;
+    begin(view(8, 640));  // 6,400 tiles
+    deal(ViewId{8});
+    const auto first = channel.all<wire::Work>();
+    ASSERT_EQ(first.size(), 1u) << "its rate is not known";
+    MergeReport merged = report(first[0].unit, FrameAssembler::Outcome::Merged, 1);
+    merged.pixel_samples = 64;
+    merged.busy = std::chrono::milliseconds(10);
+    (void)dispatcher.take(merged, now);
+    node.state.free_slots = 0;
+    begin(view(16, 640));
+    for (int i = 0; i < 3; ++i) {
+        auto capacities = dispatcher.capacities();
+        for (const std::uint64_t id : {8u, 16u, 8u}) dispatcher.deal(ViewId{id}, capacities, now);
+    }
+    const std::size_t dealt = channel.all<wire::Work>().size();
+    EXPECT_GT(dealt, 10u);
+    EXPECT_LT(dealt, 40u);
+}
+
 TEST_F(DispatcherTest, UnitsOfALostNodeGoToTheNext) {
     NodeRecord& leaving = add_node(1, 1);
     begin(view(8, 8));
