@@ -9,7 +9,7 @@
 #include "tests/master/render/simulated_cluster.h"
 
 // Random schedules of 32 nodes, each from a seed. One seed again:
-//   TESSERA_SCHEDULE=417 build/release/tests/schedule_test --gtest_filter='*/mixed_stalls'
+//   TESSERA_SCHEDULE=17 GTEST_FILTER='*/mixed_stalls' build/release/tests/schedule_test
 namespace tessera::master {
 namespace {
 
