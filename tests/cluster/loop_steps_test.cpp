@@ -234,7 +234,10 @@ TEST_F(LoopSteps, DoNotWaitForTheDisk) {
     const session::LoopStatus loop = bob->status().loop;
     EXPECT_LT(loop.longest_step_seconds, 1.0);
     const int file = ::open(pipe.c_str(), O_RDWR | O_CLOEXEC);
-    EXPECT_TRUE(edit.get().accepted);
+    const session::EditResult result = edit.get();
+    // A pipe cannot be synced either, which may be noticed before the answer.
+    const std::string problem = result.problems.empty() ? "" : result.problems.front();
+    EXPECT_TRUE(result.accepted || problem.find("Invalid argument") != std::string::npos) << problem;
     ::close(file);
     expect_short_steps("a disk that stands still for 5 s");
 }
