@@ -49,7 +49,6 @@ void Forecast::foresee(Holder& holder, double slack, TimePoint now) {
         last = std::max(last, start + item.expected);
         item.end = std::max(start + item.expected, 0.0) + 0.5 * holder.round_trip;
     }
-    holder.last_end = last;
     const double late = -(last + 0.5 * holder.round_trip);
     holder.is_late = !holder.items.empty() && late > slack;
     if (!holder.is_late) return;
@@ -73,19 +72,9 @@ bool Forecast::is_late(NodeId node) const {
     return holder != nullptr && holder->is_late;
 }
 
-double Forecast::busy(NodeId node) const {
-    const Holder* holder = find(node);
-    return holder == nullptr ? 0.0 : std::max(0.0, holder->last_end);
-}
-
 double Forecast::expected_seconds(const Balancer& balancer, const NodeCapacity& node, std::uint64_t samples) {
     const double rate = balancer.rate(node.node);
     return node.round_trip_seconds + (rate > 0.0 ? static_cast<double>(samples) / rate : 0.0);
-}
-
-void Forecast::dealt_again(std::size_t awaited, double done) {
-    awaited_[awaited].done = std::min(awaited_[awaited].done, done);
-    awaited_[awaited].all_are_late = false;
 }
 
 }  // namespace tessera::master

@@ -27,13 +27,11 @@ class Forecast {
     const std::vector<Awaited>& awaited() const { return awaited_; }
     // Everything that it holds should have arrived some time ago: it has become slower, stands still or is dead.
     bool is_late(NodeId node) const;
-    // s from now until the node has rendered all that it holds.
-    double busy(NodeId node) const;
 
     // s until film of that many pixel samples arrives from the node, if it begins at once.
     static double expected_seconds(const Balancer& balancer, const NodeCapacity& node, std::uint64_t samples);
-    // It was dealt to one more node, whose film arrives in `done` s.
-    void dealt_again(std::size_t awaited, double done);
+    // It was dealt to one more node, and is no longer what arrives last.
+    void dealt_again(std::size_t awaited) { awaited_[awaited] = {awaited_[awaited].unit, 0.0, false}; }
 
   private:
     // Others have rendered it, and its holder, which was asked to stop, has not said that it has.
@@ -46,7 +44,7 @@ class Forecast {
     struct Holder {
         NodeId node;
         std::uint32_t workers = 1;
-        double round_trip = 0.0, last_end = 0.0;
+        double round_trip = 0.0;
         bool is_late = false;
         std::vector<Item> items;
     };

@@ -65,7 +65,8 @@ std::vector<Assignment> Scheduler::assign(std::span<const NodeCapacity> nodes, c
             auto assignment = deal_overdue(node, turn);
             if (!assignment) assignment = deal(node, turn);
             const bool has_idle_worker = node.in_flight < node.workers || node.free_slots > node.workers;
-            if (!assignment && has_idle_worker) assignment = duplicate(node, turn, 0.0);
+            if (!assignment && has_idle_worker)
+                assignment = duplicate(node, turn, [](const auto&, double) { return true; });
             if (!assignment) continue;
             node.free_slots -= std::min(node.free_slots, 1u);
             ++node.in_flight;
@@ -82,7 +83,9 @@ bool Scheduler::may_take_more(const NodeCapacity& node, const Turn& turn) const 
     constexpr std::size_t MaxBeyondSlots = 32;  // node/work_queue.h takes 64
     if (node.free_slots > 0) return true;
     const UnitLedger::Load load = ledger_.load(node.node);
-    if (node.in_flight > load.units || load.units >= 2 * node.workers + MaxBeyondSlots) return false;
+    const std::size_t slots = 2 * std::size_t{node.workers};
+    if (node.in_flight > load.units || load.units < slots || load.units >= slots + MaxBeyondSlots)
+        return false;
     const double time =
         node.round_trip_seconds + std::min(turn.balancer.unit_seconds(), 0.5 * seconds_left(turn));
     return static_cast<double>(load.samples) < time * node.workers * turn.balancer.rate(node.node);
@@ -143,16 +146,19 @@ class Scheduler::DoubtfulTiles {
     std::set<std::uint32_t> waiting_;
 };
 
-// A slow node would, with samples that go to one node at a time.
+// A slow node would, with samples that go to one node at a time. Measured by the middle of all nodes: one that claims to be
+// the fastest and takes nothing keeps nobody from them.
 bool Scheduler::keeps_others_waiting(const NodeCapacity& node, const Plan::Chunk& chunk,
                                      const Turn& turn) const {
     if (ledger_.lives(chunk.trouble) == 0) return false;
-    double fastest = 0.0;
+    std::vector<double> rates;
     for (const NodeCapacity& other : turn.nodes) {
-        if (!chunk.trouble->has_failed_on(other.node))
-            fastest = std::max(fastest, turn.balancer.rate(other.node));
+        if (!chunk.trouble->has_failed_on(other.node)) rates.push_back(turn.balancer.rate(other.node));
     }
-    return turn.balancer.rate(node.node) < 0.5 * fastest;
+    if (rates.empty()) return false;
+    const auto middle = rates.begin() + static_cast<std::ptrdiff_t>((rates.size() - 1) / 2);
+    std::ranges::nth_element(rates, middle);
+    return turn.balancer.rate(node.node) < 0.5 * *middle;
 }
 
 std::optional<Plan::Chunk> Scheduler::next_chunk(const NodeCapacity& node, Turn& turn) {
@@ -218,15 +224,24 @@ void Scheduler::release_claims_of_others(std::span<const NodeCapacity> nodes) {
 // A unit that is far overdue, if it takes this node as long as all nodes take for what has not been dealt. Otherwise a slow
 // node might take it when nothing else is left, and end after all others.
 std::optional<Assignment> Scheduler::deal_overdue(const NodeCapacity& node, Turn& turn) {
-    const double left = seconds_left(turn);
-    const bool is_near_the_end = left > 0.0 && left < 10.0 * turn.balancer.unit_seconds();
-    return is_near_the_end ? duplicate(node, turn, left) : std::nullopt;
+    const double unit = turn.balancer.unit_seconds(), overdue = 5.0 * unit, left = seconds_left(turn);
+    if (left <= 0.0 || left >= 10.0 * unit || ledger_.open().empty()) return std::nullopt;
+    // Forecasts take time, and the oldest unit is seldom so old.
+    const auto& oldest = ledger_.open().begin()->second.holders;
+    if (std::ranges::none_of(oldest,
+                             [&](const auto& one) { return seconds(turn.now - one.second) >= overdue; }))
+        return std::nullopt;
+    return duplicate(node, turn, [&](const Forecast::Awaited& awaited, double mine) {
+        return awaited.all_are_late && awaited.done >= overdue && left <= mine && mine <= left + unit;
+    });
 }
 
 // The unit whose film will arrive last, if this node's would arrive sooner. It splits the film of its claim in three: that
-// has to gain some time. `left`: if that many seconds of other work are left, only what deal_overdue() is about.
-std::optional<Assignment> Scheduler::duplicate(const NodeCapacity& node, Turn& turn, double left) {
-    const double gain = 0.5 * turn.balancer.unit_seconds(), overdue = 5.0 * turn.balancer.unit_seconds();
+// has to gain some time. `may_be`: of a unit, and the seconds until this node's film of it would arrive.
+std::optional<Assignment> Scheduler::duplicate(
+    const NodeCapacity& node, Turn& turn,
+    const std::function<bool(const Forecast::Awaited&, double)>& may_be) {
+    const double gain = 0.5 * turn.balancer.unit_seconds();
     const std::vector<Forecast::Awaited>& awaited = forecast(turn).awaited();
     std::optional<std::size_t> best;
     double latest = 0.0;
@@ -240,9 +255,7 @@ std::optional<Assignment> Scheduler::duplicate(const NodeCapacity& node, Turn& t
         if (lives > 1 || (lives == 1 && !all_are_late)) continue;
         const std::uint64_t samples = unit->unit.block.count() * unit->unit.tile.pixel_count();
         const double mine = Forecast::expected_seconds(turn.balancer, node, samples);
-        if (done <= mine + gain) continue;
-        const bool fits = left <= mine && mine <= left + turn.balancer.unit_seconds();
-        if (left > 0.0 && (!all_are_late || done < overdue || !fits)) continue;
+        if (done <= mine + gain || !may_be(awaited[i], mine)) continue;
         best = i;
         latest = done;
     }
@@ -250,7 +263,7 @@ std::optional<Assignment> Scheduler::duplicate(const NodeCapacity& node, Turn& t
     ++reissued_;
     const view::WorkUnit unit = awaited[*best].unit->unit;
     ledger_.deal_again(unit.id, node.node, turn.now);
-    turn.forecast->dealt_again(*best, 0.0);
+    turn.forecast->dealt_again(*best);
     return Assignment{node.node, unit};
 }
 

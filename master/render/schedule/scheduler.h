@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -99,7 +100,8 @@ class Scheduler {
     bool keeps_others_waiting(const NodeCapacity& node, const Plan::Chunk& chunk, const Turn& turn) const;
     bool take_over_a_claim(const NodeCapacity& node, Turn& turn);
     std::optional<Assignment> deal_overdue(const NodeCapacity& node, Turn& turn);
-    std::optional<Assignment> duplicate(const NodeCapacity& node, Turn& turn, double left);
+    std::optional<Assignment> duplicate(const NodeCapacity& node, Turn& turn,
+                                        const std::function<bool(const Forecast::Awaited&, double)>& may_be);
     double seconds_left(const Turn& turn) const;
     const Forecast& forecast(Turn& turn) const;
     void release_claims_of_others(std::span<const NodeCapacity> nodes);

@@ -165,8 +165,13 @@ TEST_F(DispatcherTest, ShortUnitsGoBeyondTheSlotsOfANodeButNotWithoutEnd) {
     merged.pixel_samples = 64;
     merged.busy = std::chrono::milliseconds(10);
     (void)dispatcher.take(merged, now);
-    node.state.free_slots = 0;
     begin(view(16, 640));
+    node.state.free_slots = 0;
+    deal(ViewId{8});
+    EXPECT_EQ(channel.all<wire::Work>().size(), 1u) << "it takes nothing for now";
+    node.state.free_slots = 2;
+    deal(ViewId{8});
+    node.state.free_slots = 0;
     for (int i = 0; i < 3; ++i) {
         auto capacities = dispatcher.capacities();
         for (const std::uint64_t id : {8u, 16u, 8u}) dispatcher.deal(ViewId{id}, capacities, now);

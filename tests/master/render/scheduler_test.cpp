@@ -124,6 +124,27 @@ TEST(Scheduler, CancelsTheOtherHolderOfADuplicate) {
     EXPECT_TRUE(scheduler.complete());
 }
 
+// The fastest node, as it says, keeps samples that may have cost a node from no other.
+TEST(Scheduler, DoubtfulSamplesDoNotWaitForANodeThatTakesNothing) {
+    Scheduler scheduler({.window = {0, 0, 8, 8}, .tile = 8, .spp = 1}, ViewId{1}, 1, {1, 1}, UnitId{1},
+                        std::nullopt);
+    Balancer balancer;
+    for (const std::uint64_t node : {1u, 2u, 3u})
+        balancer.measured(NodeId{node}, node == 1 ? 1'000'000'000'000 : 1'000'000, std::chrono::seconds(1));
+    const NodeCapacity idle{.node = NodeId{1}}, first{.node = NodeId{2}, .free_slots = 1},
+        second{.node = NodeId{3}, .free_slots = 1};
+    ASSERT_EQ(scheduler.assign(std::vector{idle, first}, balancer, {}).size(), 1u);
+    scheduler.node_gone({.node = first.node,
+                         .rendering = 1,
+                         .has_ended = true,
+                         .now = TimePoint{std::chrono::seconds(1)},
+                         .describe = {}});
+    const auto again =
+        scheduler.assign(std::vector{idle, second}, balancer, TimePoint{std::chrono::seconds(1)});
+    ASSERT_EQ(again.size(), 1u);
+    EXPECT_EQ(again[0].node, second.node);
+}
+
 TEST(Scheduler, PartlyFinishedUnitReturnsItsMissingSamples) {
     Scheduler scheduler({.window = {0, 0, 8, 8}, .tile = 8, .spp = 16, .first_level = 4}, ViewId{1}, 1,
                         {1, 1}, UnitId{1}, std::nullopt);
