@@ -147,7 +147,7 @@ class Scheduler::DoubtfulTiles {
 };
 
 // A slow node would, with samples that go to one node at a time. Measured by the middle of all nodes: one that claims to be
-// the fastest and takes nothing keeps nobody from them.
+// the fastest and takes nothing keeps them from no other.
 bool Scheduler::keeps_others_waiting(const NodeCapacity& node, const Plan::Chunk& chunk,
                                      const Turn& turn) const {
     if (ledger_.lives(chunk.trouble) == 0) return false;
@@ -226,7 +226,7 @@ void Scheduler::release_claims_of_others(std::span<const NodeCapacity> nodes) {
 std::optional<Assignment> Scheduler::deal_overdue(const NodeCapacity& node, Turn& turn) {
     const double unit = turn.balancer.unit_seconds(), overdue = 5.0 * unit, left = seconds_left(turn);
     if (left <= 0.0 || left >= 10.0 * unit || ledger_.open().empty()) return std::nullopt;
-    // Forecasts take time, and the oldest unit is seldom so old.
+    // Forecasts take time, and even the oldest unit is rarely so old.
     const auto& oldest = ledger_.open().begin()->second.holders;
     if (std::ranges::none_of(oldest,
                              [&](const auto& one) { return seconds(turn.now - one.second) >= overdue; }))
