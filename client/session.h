@@ -33,7 +33,7 @@ struct SessionSettings {
     Duration lost_limit =
         std::chrono::seconds(30);  // later: without a message while reconnecting or waiting for a delivery
     Duration heartbeat = std::chrono::seconds(1);  // until the master's welcome sets it
-    // Requested: waiting for a master that does not answer ends within a second, with Error{Unavailable}.
+    // Requested: waiting for a master that is not there, or has fallen silent, ends with Error{Unavailable}.
     std::stop_token stop = {};
     bool mirrors_scene = true;  // mirror live scenes on join; otherwise scene() is empty until a refresh
     // Called on the caller's thread when the connection is lost (and being re-established) and when it is back.

@@ -42,6 +42,11 @@ Session::Implementation::Implementation(std::unique_ptr<net::Channel> channel,
 
 bool Session::Implementation::receive_next(TimePoint deadline, std::stop_token stop) {
     auto incoming = link.next(deadline, stop);
+    if (settings.stop.stop_requested()) {
+        if (!interrupted_at) interrupted_at = clock.now();
+        if (!incoming && link.is_silent() && clock.now() - *interrupted_at >= InterruptedWait)
+            throw Error(ErrorCode::Unavailable, "interrupted, and the master does not answer");
+    }
     if (!incoming) return false;
     std::visit([this](auto&& content) { take(std::forward<decltype(content)>(content)); },
                *std::move(incoming));

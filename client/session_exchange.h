@@ -63,13 +63,15 @@ struct Session::Implementation {
     OutputCollector output_collector;
     std::deque<OutputEvent> output_events;
     wire::BlobFetcher fetcher;
+    std::optional<TimePoint> interrupted_at;
 
     Implementation(std::unique_ptr<net::Channel> channel, std::function<void()> reconnect,
                    std::shared_ptr<scene::BlobStore> store, const Clock& time, SessionSettings how);
 
     // ---- received messages ----
 
-    // False: no message until the deadline.
+    // All waits go through it. False: no message until the deadline. Throws Error{Unavailable} after an interrupt if the
+    // master is silent.
     bool receive_next(TimePoint deadline, std::stop_token stop);
     void take(Interrupted&&) const { notify_away(true); }
     void take(Rejoined&& rejoined);
@@ -98,12 +100,8 @@ struct Session::Implementation {
         question.request = request;
         asked.emplace(request, question);
         link.send(std::move(question));
-        TimePoint deadline = clock.now() + settings.lost_limit;
-        for (bool is_interrupted = false; !answers.contains(request);) {
-            if (!is_interrupted && settings.stop.stop_requested()) {
-                is_interrupted = true;
-                deadline = std::min(deadline, clock.now() + InterruptedWait);
-            }
+        const TimePoint deadline = clock.now() + settings.lost_limit;
+        while (!answers.contains(request)) {
             receive_next(std::min(clock.now() + Slice, deadline), {});
             throw_refusals();
             if (clock.now() >= deadline) {

@@ -85,14 +85,8 @@ ViewResult Session::wait_for_end(std::uint64_t number,
                                  std::stop_token stop) {
     Implementation& self = *implementation_;
     TimePoint last_sign = self.clock.now();
-    std::optional<TimePoint> stopped_at;
     while (true) {
         if (stop.stop_requested() && !self.stopping.contains(number)) stop_view(number);
-        if (stop.stop_requested()) {
-            if (!stopped_at) stopped_at = self.clock.now();
-            if (self.link.is_silent() && self.clock.now() - *stopped_at >= InterruptedWait)
-                throw Error(ErrorCode::Unavailable, "interrupted, and the master does not answer");
-        }
         const auto done = self.ended_views.find(number);
         const auto frame = self.frames.find(number);
         if (done != self.ended_views.end() && frame != self.frames.end() &&
