@@ -15,7 +15,6 @@ one picture after the other, and a job renders without a client; then another cl
 Exit status: 0 all held, 1 one of them did not, 64 wrong use.
 """
 
-import argparse
 import heapq
 import json
 import pathlib
@@ -24,11 +23,12 @@ import signal
 import sys
 import time
 
+from command import end_with, new_parser, package, wrong_use
 from faults import draw_faults, draw_links
 from work import Editor, Expected, Job, Renders, wait_until
 from world import ChaosError, World
 
-from cluster import ClusterError, Programs, load_package
+from cluster import ClusterError, Programs
 
 NODES = ["node-1", "node-2", "node-3"]
 PATIENCE = 120  # s until a calm cluster has finished everything
@@ -155,16 +155,8 @@ def run(seed, options, tessera, expected, programs):
           f"{schedule.editor.edits} edits, {time.monotonic() - began:.1f} s", flush=True)
 
 
-def wrong_use(text):
-    print(f"{pathlib.Path(sys.argv[0]).name}: {text}; see --help", file=sys.stderr)
-    sys.exit(64)
-
-
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.error = wrong_use
-    parser.add_argument("programs", type=pathlib.Path, help="bin folder of a build")
-    parser.add_argument("python", type=pathlib.Path, help="python folder of a build")
+    parser = new_parser(__doc__)
     parser.add_argument("--seeds", type=seeds_of, default=range(1, 11), help="one seed, or the first and the last: 1-10")
     parser.add_argument("--seconds", type=float, default=5.0, help="how long faults go on, twice (5)")
     parser.add_argument("--backend", default="embree", help="back-end of the nodes (embree)")
@@ -172,8 +164,8 @@ def main():
     parser.add_argument("--verbose", action="store_true", help="print the faults")
     options = parser.parse_args()
     failed = []
+    tessera = package(options)
     try:
-        tessera = load_package(options.python)
         with Programs(options.programs) as programs:
             expected = Expected(programs, options.backend)
     except ClusterError as error:
@@ -195,7 +187,4 @@ def main():
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except KeyboardInterrupt:
-        sys.exit(130)
+    end_with(main)

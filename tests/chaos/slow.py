@@ -10,21 +10,18 @@ that of the second one by 5 % or 16 MiB.
 Exit status: 0 all are bounded, 1 one is not, or a process has ended, 64 wrong use.
 """
 
-import argparse
 import contextlib
-import pathlib
 import signal
 import statistics
-import sys
 import threading
 import time
 
-from chaos import wrong_use
+from command import end_with, new_parser, package
 from soak import resident_bytes
-from work import SCENE
+from work import SCENE, Editor
 from world import ChaosError
 
-from cluster import Cluster, ClusterError, Programs, load_package
+from cluster import Cluster, ClusterError, Programs
 
 PERIOD, RUNS = 0.5, 0.05  # s: how often a slow process runs, and for how long
 MEMORY = 256  # MiB: of the master
@@ -99,6 +96,14 @@ class Stage:
     def __exit__(self, *problem):
         return self._stack.__exit__(*problem)
 
+    def endpoint(self, _):
+        """Of the master, for any peer."""
+        return self.cluster.endpoint
+
+    @property
+    def keys(self):
+        return self.cluster.keys
+
     def start_render(self):
         return self._start("render", SCENE, "--size", SIZE, "--spp", SPP, "-o", self._programs.scratch / "slow.exr")
 
@@ -141,37 +146,22 @@ def slow_node(programs, _, seconds):
 
 
 def silent_client(programs, tessera, seconds):
-    """One client is stopped as it watches, another one runs and never asks for a frame, while a third one edits."""
-    with Stage(programs) as stage:
-        with tessera.connect(stage.cluster.endpoint, keys=stage.cluster.keys, name="ann") as ann:
-            scene = ann.join("slow")
-            with ann.transaction() as edit:
-                material = edit.create("material", name="ember")
-                square = dict(indices=[(0, 1, 2), (0, 2, 3)], positions=[(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)])
-                place = edit.create("transform", name="place", children=[edit.create("geometry", material=material, **square)])
+    """One client is stopped as it watches; another one edits, and never asks for a frame of the view that it has opened."""
+    with Stage(programs) as stage, Editor(tessera, stage) as editor:
+        with tessera.connect(stage.endpoint("bob"), keys=stage.keys, name="bob") as bob:
+            bob.join("chaos")
+            with bob.transaction() as edit:
                 edit.create("camera", name="eye")
-            stopped = stage.start_watch()
-            stage.wait_for_work()
-            ann.open_view(tessera.look_at((0, 0, 6), (0, 0, 0)), size=(480, 270), spp=16, picture="planes")
-            stopped.send_signal(signal.SIGSTOP)
-            end = threading.Event()
-
-            def edit_all_the_time():
-                number = 0
-                while not end.wait(0.05):
-                    number += 1
-                    with ann.transaction() as edit:
-                        edit.set(place.id, matrix=tessera.translation(0.01 * (number % 100), 0.0, 0.0))
-
-            editor = threading.Thread(target=edit_all_the_time, daemon=True)
-            editor.start()
-            try:
-                stage.measure(seconds, stopped=stopped, idle=Myself())
-            finally:
-                end.set()
-                editor.join()
-                stopped.send_signal(signal.SIGCONT)
-            assert scene is not None
+        stopped = stage.start_watch()
+        stage.wait_for_work()
+        stopped.send_signal(signal.SIGSTOP)
+        try:
+            stage.measure(seconds, stopped=stopped, idle=Myself())
+        finally:
+            stopped.send_signal(signal.SIGCONT)
+        editor.finish()
+        if editor.edits < seconds:
+            raise ChaosError(f"only {editor.edits} edits in {seconds:g} s")
 
 
 class Myself:
@@ -187,17 +177,11 @@ CASES = {"slow-master": slow_master, "slow-node": slow_node, "silent-client": si
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.error = wrong_use
-    parser.add_argument("programs", type=pathlib.Path, help="bin folder of a build")
-    parser.add_argument("python", type=pathlib.Path, help="python folder of a build")
+    parser = new_parser(__doc__)
     parser.add_argument("--seconds", type=float, default=60.0, help="how long each (60)")
     parser.add_argument("--only", choices=list(CASES), help="one of them")
     options = parser.parse_args()
-    try:
-        tessera = load_package(options.python)
-    except ClusterError as error:
-        wrong_use(str(error))
+    tessera = package(options)
     failed = 0
     for name, case in CASES.items():
         if options.only not in (None, name):
@@ -213,7 +197,4 @@ def main():
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except KeyboardInterrupt:
-        sys.exit(130)
+    end_with(main)

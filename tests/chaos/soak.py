@@ -11,7 +11,6 @@ tolerance.
 Exit status: 0 flat, 1 something grows or a promise was broken, 64 wrong use.
 """
 
-import argparse
 import contextlib
 import json
 import os
@@ -20,12 +19,13 @@ import statistics
 import sys
 import time
 
-from chaos import NODES, wrong_use
+from chaos import NODES
+from command import end_with, new_parser, package
 from faults import draw_faults, draw_links
 from work import Editor
 from world import ChaosError, World
 
-from cluster import ClusterError, Programs, load_package
+from cluster import ClusterError, Programs
 
 SECONDS_BETWEEN_SAMPLES = 2.0
 MEAN_GAP = 4.0  # s between two faults
@@ -118,19 +118,13 @@ def soak(world, tessera, options):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.error = wrong_use
-    parser.add_argument("programs", type=pathlib.Path, help="bin folder of a build")
-    parser.add_argument("python", type=pathlib.Path, help="python folder of a build")
+    parser = new_parser(__doc__)
     parser.add_argument("--minutes", type=float, default=120.0, help="how long (120)")
     parser.add_argument("--seed", type=int, default=1, help="of the faults (1)")
     parser.add_argument("--backend", default="embree", help="back-end of the nodes (embree)")
     parser.add_argument("--json", type=pathlib.Path, help="write all figures to this file")
     options = parser.parse_args()
-    try:
-        tessera = load_package(options.python)
-    except ClusterError as error:
-        wrong_use(str(error))
+    tessera = package(options)
     try:
         with Programs(options.programs) as programs, World(programs, draw_links(options.seed, [*NODES, "editor"]),
                                                            options.backend) as world:
@@ -150,7 +144,4 @@ def main():
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except KeyboardInterrupt:
-        sys.exit(130)
+    end_with(main)
