@@ -161,18 +161,18 @@ double step_seconds(const session::LoopStatus& loop, double fraction) {
 
 // What was refused, sent again or lost since the master has started; nothing if there was none.
 void print_troubles(const session::ClusterStatus& status) {
-    const std::pair<std::uint64_t, const char*> troubles[] = {
-        {status.dropped_messages, "messages dropped: malformed, or not allowed for the role"},
-        {status.refused_film, "films refused: malformed, or not asked for"},
-        {status.refused_handshakes, "connections refused: their keys are not on the allow-list"},
-        {status.resyncs, "times that the whole scene was sent again to a node"},
-        {status.lost_nodes, "nodes lost: silent, or their connection broke"},
-        {status.lost_sessions, "clients lost: silent, or their connection broke"},
-        {status.contradictions, "contradictions between nodes of one kind: see the master's log"},
-        {status.caught_exceptions, "internal errors: see the master's log"},
+    const std::pair<const char*, std::uint64_t> troubles[] = {
+        {"dropped messages (malformed, or not allowed for the role)", status.dropped_messages},
+        {"refused films (malformed, or not asked for)", status.refused_film},
+        {"refused connections (keys that are not on the allow-list)", status.refused_handshakes},
+        {"whole scenes sent again to nodes", status.resyncs},
+        {"lost nodes (silent, or the connection broke)", status.lost_nodes},
+        {"lost clients (silent, or the connection broke)", status.lost_sessions},
+        {"contradictions between nodes of one kind (see the master's log)", status.contradictions},
+        {"internal errors (see the master's log)", status.caught_exceptions},
     };
-    for (const auto& [count, what] : troubles) {
-        if (count > 0) std::printf("%llu %s\n", static_cast<unsigned long long>(count), what);
+    for (const auto& [what, count] : troubles) {
+        if (count > 0) std::printf("%s: %llu\n", what, static_cast<unsigned long long>(count));
     }
 }
 

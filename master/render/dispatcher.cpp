@@ -57,6 +57,10 @@ void Dispatcher::cancel(ViewId pass) {
     if (Active* cancelled = active(pass)) send_cancellations(cancelled->scheduler.cancel_everything());
 }
 
+void Dispatcher::seal(ViewId pass) {
+    if (Active* sealed = active(pass)) sealed->scheduler.seal();
+}
+
 void Dispatcher::revise(const view::View& view) {
     Active* pass = active(view.id);
     if (pass == nullptr) return;

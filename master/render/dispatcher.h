@@ -39,6 +39,7 @@ class Dispatcher {
                      std::optional<TimePoint> deadline = {});
     void end(ViewId pass);     // cancelled; nodes forget its view
     void cancel(ViewId pass);  // deals no more units; film in flight is still merged
+    void seal(ViewId pass);    // its film gets no more samples
     // The view continues under another revision: units in flight are dealt again.
     void revise(const view::View& view);
     void follow(ViewId pass, Version version);  // another version of the scene with the same samples

@@ -19,6 +19,10 @@ std::optional<Admission> Dispatcher::admit(NodeRecord& node, const wire::FilmHea
         return std::nullopt;
     }
     Admission admission = pass->scheduler.admit(node.id, {head.unit, head.version, head.rect, head.block});
+    if (admission.use == Admission::Use::Drop) {
+        film_is_taken(node.id, bytes);
+        return std::nullopt;
+    }
     if (admission.problem.empty()) {
         if (is_to_be_verified(node, *pass)) admission.use = Admission::Use::MergeAndHash;
         return admission;
@@ -37,6 +41,14 @@ void Dispatcher::malformed_film(NodeRecord& node, const std::string& problem, st
 Dispatcher::Taken Dispatcher::take(const MergeReport& report, TimePoint now) {
     film_is_taken(report.node, report.bytes);
     confirm_cancelled(report.unit, now);  // it was finished already
+    if (Active* merged_into = holder(report.unit)) merged_into->scheduler.merge_ended();
+    if (!report.failure.empty()) {
+        events_({wire::Severity::Error, "film was lost, and is rendered again: " + report.failure});
+        verifier_.end(report.unit, report.node);
+        if (Active* pass = active(report.view))
+            pass->scheduler.end_film(report.node, report.tile, report.block, Fate::Lost);
+        return Taken::Dropped;
+    }
     if (Verifier::is_verification(report.view)) {
         take_verification(report, now);
         return Taken::Dropped;

@@ -75,7 +75,7 @@ void FilmStore::run(std::stop_token stop) {
         try {
             std::visit([this](auto& chosen) { perform(chosen); }, task);
         } catch (const std::exception& error) {
-            outputs_.put(TaskFailure{std::string("film was lost: ") + error.what()});
+            outputs_.put(TaskFailure{std::string("a task of the film store failed: ") + error.what()});
         }
         if (const auto* film = std::get_if<Film>(&task)) {
             const std::scoped_lock done(mutex_);
@@ -123,11 +123,20 @@ void FilmStore::perform(Film& task) {
                        .tile = task.admission.tile,
                        .block = task.head.block,
                        .problem = {}};
+    try {
+        merge(task, report);
+    } catch (const std::exception& error) {
+        report.failure = error.what();
+    }
+    outputs_.put(std::move(report));
+}
+
+void FilmStore::merge(Film& task, MergeReport& report) {
     auto message = wire::decode_bulk(task.bytes);
     auto* part = message ? std::get_if<wire::FilmPart>(&*message) : nullptr;
     if (part == nullptr) {
         report.problem = message ? "not film" : message.error().what();
-        return outputs_.put(std::move(report));
+        return;
     }
     report.pixel_samples = part->film.block.count() * part->film.pixel_count();
     report.nonfinite = part->film.nonfinite_samples;
@@ -135,12 +144,11 @@ void FilmStore::perform(Film& task) {
     report.rays = part->rays;
     report.busy = std::chrono::nanoseconds(part->busy_ns);
     if (task.admission.use != Admission::Use::Merge) report.bits = frame::film_hash(part->film);
-    if (task.admission.use == Admission::Use::Compare) return outputs_.put(std::move(report));
+    if (task.admission.use == Admission::Use::Compare) return;
     OpenFilm* opened = film(part->view);
     report.stale = opened == nullptr || part->revision != opened->revision;
     if (!report.stale)
         report.result = opened->assembler->insert(std::move(part->film), task.admission.replaceable);
-    outputs_.put(std::move(report));
 }
 
 void FilmStore::perform(Deliver& task) {

@@ -105,6 +105,7 @@ class FilmStore {
     void perform(RetainAsFeatures& task);
     void perform(AddChannels& task);
     void perform(Film& task);
+    void merge(Film& task, MergeReport& report);
     void perform(Deliver& task);
     void perform(Copy& task);
     void perform(Reconstruct& task);

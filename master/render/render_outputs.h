@@ -32,6 +32,7 @@ struct MergeReport {
     std::optional<Hash256> bits{};  // of its film, if Admission::use asks for it
     bool stale = false;             // of a view or revision that is not being assembled
     std::string problem;            // not empty: its content is damaged or impossible
+    std::string failure{};  // not empty: the master could not merge it, most likely for want of memory
 };
 // One merged tile of a frame, encoded for a client.
 struct EncodedTile {

@@ -236,8 +236,8 @@ void ViewRunner::advance_picture(ViewState& view, TimePoint now) {
                 now);
         }
     }
-    if (run.outcome && !run.is_over() && (scheduler.idle() || now - run.outcome_at > settings_.stop_grace))
-        return finish(view, now);
+    const bool is_settled = scheduler.idle() || now - run.outcome_at > settings_.stop_grace;
+    if (run.outcome && !run.is_over() && is_settled && !scheduler.is_merging()) return finish(view, now);
     if (is_whole) show(view, now);
 }
 
@@ -290,6 +290,7 @@ void ViewRunner::decide(ViewState& view, Outcome outcome, std::string message, T
 void ViewRunner::finish(ViewState& view, TimePoint now) {
     Run& run = view.run;
     if (!view.passes.empty()) {
+        passes_.dispatcher.seal(view.pass().view.id);
         observe(view, now);
         run.left_out = passes_.dispatcher.left_out(view.pass().view.id);
     }

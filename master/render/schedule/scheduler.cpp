@@ -276,6 +276,17 @@ void Scheduler::cut_round_for_deadline(const Turn& turn) {
 
 // ---- ends ----
 
+Admission Scheduler::admit(NodeId node, const ArrivingFilm& film) {
+    Admission admission = ledger_.admit(node, film);
+    if (!admission.problem.empty()) return admission;
+    if (sealed_ && !ledger_.samples(admission.tile).covers(film.block)) {
+        admission.use = Admission::Use::Drop;
+    } else {
+        ++merging_;
+    }
+    return admission;
+}
+
 bool Scheduler::end(UnitId unit, NodeId node, Fate fate) {
     const bool held = ledger_.end(unit, node, fate);
     collect_returned();

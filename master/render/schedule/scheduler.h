@@ -42,8 +42,13 @@ class Scheduler {
     std::vector<Assignment> assign(std::span<const NodeCapacity> nodes, const Balancer& balancer,
                                    TimePoint now);
 
-    // ---- film: admit() when it arrives, then merged() or end() ----
-    Admission admit(NodeId node, const ArrivingFilm& film) { return ledger_.admit(node, film); }
+    // ---- film: admit() when it arrives, then merge_ended(), and merged() or end() ----
+    Admission admit(NodeId node, const ArrivingFilm& film);
+    // Film that was admitted is no longer being merged, whatever came of it.
+    void merge_ended() { merging_ -= merging_ > 0; }
+    bool is_merging() const { return merging_ > 0; }
+    // Film with further samples is dropped, so that the film stays that of merged_samples().
+    void seal() { sealed_ = true; }
     // Film of `block` of `tile` is merged. Returns units of other holders that are no longer needed.
     std::vector<Cancellation> merged(NodeId node, std::uint32_t tile, const frame::SampleBlock& block) {
         return ledger_.arrived(node, tile, block);
@@ -113,7 +118,8 @@ class Scheduler {
     std::uint64_t revision_;
     Version version_;
     std::optional<TimePoint> deadline_;
-    bool closed_ = false;
+    bool closed_ = false, sealed_ = false;
+    std::uint32_t merging_ = 0;
     UnitLedger ledger_;
     std::vector<TileFailure> failed_tiles_;
     std::uint64_t issued_ = 0, reissued_ = 0;

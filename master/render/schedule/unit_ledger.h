@@ -52,8 +52,8 @@ struct Admission {
     std::uint32_t tile = 0;
     // Samples of this tile that arrived earlier as parts of the same units; the film may replace blocks of these alone.
     BlockSet replaceable;
-    // Whether it is merged, and its bits are hashed to verify them or because they verify others'.
-    enum class Use : std::uint8_t { Merge, MergeAndHash, Compare };
+    // Whether it is merged, and its bits are hashed to verify them or because they verify others', or it comes too late.
+    enum class Use : std::uint8_t { Merge, MergeAndHash, Compare, Drop };
     Use use = Use::Merge;
 };
 

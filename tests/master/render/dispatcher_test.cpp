@@ -306,7 +306,20 @@ TEST_F(DispatcherTest, DamagedFilmIsRenderedAgain) {
     EXPECT_FALSE(dispatcher.find(ViewId{8})->complete());
     add_node(2, 1);
     deal(ViewId{8});
+    const view::WorkUnit again = channel.all<wire::Work>().back().unit;
+    EXPECT_EQ(again.block, unit.block);
+    // The master had no memory to merge it: it is rendered again, and no node is to blame.
+    ASSERT_TRUE(admit(2, head(again)));
+    MergeReport lost = report(again, FrameAssembler::Outcome::Misfit, 2);
+    lost.failure = "std::bad_alloc";
+    EXPECT_EQ(dispatcher.take(lost, now), Dispatcher::Taken::Dropped);
+    EXPECT_EQ(quarantine_reason(2), "");
+    EXPECT_EQ(dispatcher.counts().lost, 1u);
+    EXPECT_FALSE(dispatcher.find(ViewId{8})->is_merging());
+    add_node(3, 1);
+    deal(ViewId{8});
     EXPECT_EQ(channel.all<wire::Work>().back().unit.block, unit.block);
+    EXPECT_NE(channel.all<wire::Work>().back().unit.id, again.id);
 }
 
 TEST_F(DispatcherTest, ReproducibleWorkGoesToPinnedNodesOnly) {

@@ -190,5 +190,32 @@ TEST(Scheduler, DealsNoMoreAfterCancellingEverything) {
     EXPECT_TRUE(scheduler.idle());
 }
 
+// Film may arrive right before, or right after, the node confirms that its unit is cancelled.
+TEST(Scheduler, TheFilmStaysThatOfTheCountedSamplesOnceItIsSealed) {
+    Scheduler scheduler({.window = {0, 0, 16, 8}, .tile = 8, .spp = 4}, ViewId{1}, 1, {1, 1}, UnitId{1},
+                        std::nullopt);
+    Balancer balancer;
+    const auto units = scheduler.assign(std::vector{NodeCapacity{NodeId{1}, 1, 2, 0}}, balancer, TimePoint{});
+    ASSERT_EQ(units.size(), 2u);
+    const auto admit = [&](const view::WorkUnit& unit) {
+        return scheduler.admit(NodeId{1}, {unit.id, unit.version, unit.tile, unit.block});
+    };
+    scheduler.cancel_everything();
+    const Admission first = admit(units[0].unit);
+    for (const auto& assignment : units) scheduler.end(assignment.unit.id, NodeId{1}, Fate::Cancelled);
+    EXPECT_TRUE(scheduler.idle());
+    EXPECT_TRUE(scheduler.is_merging()) << "its samples are not counted yet";
+    scheduler.merge_ended();
+    scheduler.merged(NodeId{1}, first.tile, units[0].unit.block);
+    EXPECT_FALSE(scheduler.is_merging());
+    const std::uint64_t samples = scheduler.merged_samples();
+    scheduler.seal();
+    const Admission late = admit(units[1].unit);
+    EXPECT_EQ(late.problem, "");
+    EXPECT_EQ(late.use, Admission::Use::Drop);
+    EXPECT_EQ(admit(units[0].unit).use, Admission::Use::Merge) << "another copy is compared";
+    EXPECT_EQ(scheduler.merged_samples(), samples);
+}
+
 }  // namespace
 }  // namespace tessera::master
