@@ -23,6 +23,7 @@ struct LoopbackHub::State {
         std::array<std::deque<Message>, 2> queues;  // by link
         std::size_t turn = 0;
         bool woken = false, closed = false;
+        std::condition_variable changed;  // one each: a message must not wake all who wait for others
     };
     struct Client {
         Role role = Role::None;
@@ -34,7 +35,6 @@ struct LoopbackHub::State {
 
     const Limits limits;
     std::mutex mutex;  // protects the members below
-    std::condition_variable changed;
     Inbox server;
     std::map<std::uint64_t, Client> clients;  // by number, from 1
     std::uint64_t next_client = 1;
@@ -45,13 +45,13 @@ struct LoopbackHub::State {
         if (queue.size() >= limits.messages_per_queue) return SendResult::WouldBlock;
         message.bytes = std::move(bytes);
         queue.push_back(std::move(message));
-        changed.notify_all();
+        inbox.changed.notify_all();
         return SendResult::Sent;
     }
 
     Received take(Inbox& inbox, TimePoint deadline) {
         std::unique_lock lock(mutex);
-        changed.wait_until(lock, deadline, [&] {
+        inbox.changed.wait_until(lock, deadline, [&] {
             return inbox.closed || inbox.woken || !inbox.queues[0].empty() || !inbox.queues[1].empty();
         });
         if (inbox.closed) return NoMessage::Closed;
@@ -71,14 +71,14 @@ struct LoopbackHub::State {
     void wake(Inbox& inbox) {
         const std::scoped_lock lock(mutex);
         inbox.woken = true;
-        changed.notify_all();
+        inbox.changed.notify_all();
     }
 
     void close(Inbox& inbox) {
         const std::scoped_lock lock(mutex);
         inbox.closed = true;
         for (auto& queue : inbox.queues) queue.clear();
-        changed.notify_all();
+        inbox.changed.notify_all();
     }
 };
 

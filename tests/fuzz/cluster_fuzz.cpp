@@ -130,8 +130,10 @@ class Fuzz {
                 traffic_, highest_unit_, random_.below(~0ull)));
         }
     }
-    // As many messages as the peers get rid of, among faults, with a pause after each; `done` ends it earlier.
+    // As many messages as the peers get rid of, among faults, with this pause for each on average; `done` ends it earlier.
     void send(std::uint64_t messages, Faults& faults, Duration pause, const std::function<bool()>& done) {
+        constexpr unsigned Burst = 8;
+        unsigned sent_since_pause = 0;
         std::uint64_t idle = 0;
         const std::uint64_t end = sent() + messages;
         while (sent() < end && !done()) {
@@ -139,7 +141,10 @@ class Fuzz {
             if (peer.act()) {
                 idle = 0;
                 faults.step(links_.front(), links_.back());
-                if (pause > Duration{}) std::this_thread::sleep_for(pause);
+                if (pause > Duration{} && ++sent_since_pause == Burst) {
+                    sent_since_pause = 0;
+                    std::this_thread::sleep_for(Burst * pause);
+                }
             } else if (++idle > peers_.size()) {
                 std::this_thread::sleep_for(1ms);
                 idle = 0;
@@ -214,6 +219,8 @@ class Fuzz {
         constexpr std::size_t LongEdit = 3;
         std::vector<ObjectId> others;
         for (std::size_t step = 1; !stop; ++step) {
+            // Without, virtual time would stand still: there would always be an edit to answer.
+            std::this_thread::sleep_for(10ms);
             if (step % LongEdit == 0) edit_many(ann, others);
             const ObjectId id = mine[step % mine.size()];
             const float roughness = static_cast<float>(step % 1000) / 1000.0f;

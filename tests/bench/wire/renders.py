@@ -49,6 +49,7 @@ def two_nodes(programs, options, progress):
                 progress(f"pair {i + 1} of {options.pairs}, {place}")
                 pair[place] = on_cluster(cluster, 2, job) if place == "cluster" else embedded(programs, 2, job)
             pairs.append(pair)
+            progress(f"pair {i + 1} of {options.pairs}: cluster / embedded = {pair['cluster'].seconds / pair['embedded'].seconds:.3f}")
 
     def ratios(name):
         return [getattr(pair["cluster"], name) / getattr(pair["embedded"], name) for pair in pairs]
