@@ -13,8 +13,11 @@ void alpha_filter(const RTCFilterFunctionNArguments* arguments) {
         const std::uint32_t triangle = RTCHitN_primID(arguments->hit, count, i);
         const glm::vec2 barycentric{RTCHitN_u(arguments->hit, count, i), RTCHitN_v(arguments->hit, count, i)};
         const float distance = RTCRayN_tfar(arguments->ray, count, i);
-        if (shading::skips(context->skip, instance, distance) ||
-            !shading::stops_at(*context->scene, instance, triangle, barycentric, context->seed)) {
+        if (context->connects && shading::is_thin_wall(*context->scene, instance)) {
+            context->meets_walls = true;
+            arguments->valid[i] = 0;
+        } else if (shading::skips(context->skip, instance, distance) ||
+                   !shading::stops_at(*context->scene, instance, triangle, barycentric, context->seed)) {
             arguments->valid[i] = 0;
         }
     }

@@ -14,10 +14,12 @@ struct TraceContext {
     const shading::Scene* scene = nullptr;
     std::uint32_t seed = 0;  // of (pixel, sample, bounce, kind of ray)
     shading::Skip skip = shading::skip_nothing();
+    bool connects = false;             // a ray to a light
+    mutable bool meets_walls = false;  // it has met thin walls (is_thin_wall)
 };
 
 // Embree filter function: rejects hits that the ray has already passed (Skip) or that alpha lets pass
-// (stops_at).
+// (stops_at), and on the way to a light thin walls.
 void alpha_filter(const RTCFilterFunctionNArguments* arguments);
 
 }  // namespace tessera::embree

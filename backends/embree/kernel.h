@@ -16,7 +16,7 @@ struct Kernel {
 };
 
 // Plain: common features only. The next add one rarely used feature each. Lights: sphere and quad lights,
-// shadow catchers; Coated: coat, sheen and anisotropy; Glass: rough glass and absorption in glass; Film:
+// shadow catchers; Coated: coat, sheen and anisotropy; Glass: panes, rough glass and absorption in glass; Film:
 // iridescence; Shader: CommonSurfaceShader and the features of Lights; Moving: motion; Foggy: media with and
 // without a surface. Full: all features, for scenes that combine rare ones.
 extern const Kernel PlainKernel, LightsKernel, CoatedKernel, GlassKernel, FilmKernel, ShaderKernel,

@@ -44,11 +44,13 @@ bool trace_closest(const Rays& rays, const shading::Ray& ray, std::uint32_t seed
 }
 
 bool trace_occluded(const Rays& rays, const glm::vec3& origin, const glm::vec3& segment, float far,
-                    std::uint32_t seed) {
+                    std::uint32_t seed, bool& meets_walls) {
     TraceContext started = start(rays, seed);
+    started.connects = true;
     RTCRay ray{origin.x,  origin.y,  origin.z, shading::NearestHit, segment.x, segment.y,
                segment.z, rays.time, far,      rays.view.layers,    0,         0};
     rtcOccluded1(rays.top, &started.embree, &ray);
+    meets_walls = started.meets_walls;
     return ray.tfar < 0.0f;
 }
 

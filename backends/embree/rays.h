@@ -18,6 +18,6 @@ struct Rays {
 bool trace_closest(const Rays& rays, const shading::Ray& ray, std::uint32_t seed, const shading::Skip& skip,
                    shading::Hit& hit);
 bool trace_occluded(const Rays& rays, const glm::vec3& origin, const glm::vec3& segment, float far,
-                    std::uint32_t seed);
+                    std::uint32_t seed, bool& meets_walls);
 
 }  // namespace tessera::embree

@@ -18,9 +18,14 @@ struct HostContext : backend::PathLogger {
     shading::BvhItems pool;
     std::uint32_t top;
     shading::Skip skip = shading::skip_nothing();
+    bool* meets_walls = nullptr;  // not null: a ray to a light
 };
 
 bool stops_ray(const HostContext& context, const shading::Hit& candidate, std::uint32_t seed) {
+    if (context.meets_walls != nullptr && shading::is_thin_wall(context.scene, candidate.instance)) {
+        *context.meets_walls = true;
+        return false;
+    }
     if (shading::skips(context.skip, candidate.instance, candidate.distance)) return false;
     return shading::stops_at(context.scene, candidate.instance, candidate.triangle, candidate.barycentric,
                              seed);
@@ -38,10 +43,13 @@ bool trace_closest(const HostContext& context, const shading::Ray& ray, std::uin
 }
 
 bool trace_occluded(const HostContext& context, const glm::vec3& origin, const glm::vec3& segment, float far,
-                    std::uint32_t seed) {
+                    std::uint32_t seed, bool& meets_walls) {
+    meets_walls = false;
+    HostContext asked = context;
+    asked.meets_walls = &meets_walls;
     return shading::bvh_trace(context.pool, context.top, origin, segment, shading::NearestHit, far,
                               shading::BvhAny | shading::BvhAlpha | shading::BvhMotion, context.view.layers,
-                              context.time, context, seed)
+                              context.time, asked, seed)
                .instance != shading::NoInstance;
 }
 

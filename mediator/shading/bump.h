@@ -19,8 +19,8 @@ inline vec3 vertex_normal(IN(Instance) instance, IN(Mesh) mesh, uvec3 corners, v
     return direction_of(instance.normals * between(mean, next, mesh.key_fraction), face);
 }
 
-// The interpolated tangent, made orthogonal to the normal; w: 1 or -1, the sign of the bitangent; 0: no
-// tangent.
+// The interpolated tangent, made orthogonal to the normal; w: 1 or -1, the sign of the bitangent
+// w (normal x tangent); 0: no tangent. Where the instance mirrors, so does the cross product.
 inline vec4 tangent_at(IN(Instance) instance, IN(Mesh) mesh, uvec3 corners, vec2 b, vec3 normal) {
     if ((mesh.arrays & MeshTangents) == 0u) return vec4(0.0f);
     const vec4 mean = mesh.tangents.items[corners.x] * (1.0f - b.x - b.y) +
@@ -28,7 +28,7 @@ inline vec4 tangent_at(IN(Instance) instance, IN(Mesh) mesh, uvec3 corners, vec2
     const vec3 tangent = instance.linear * vec3(mean);
     const vec3 across = direction_of(tangent - normal * dot(normal, tangent), vec3(0.0f));
     if (across == vec3(0.0f)) return vec4(0.0f);
-    return vec4(across.x, across.y, across.z, mean.w < 0.0f ? -1.0f : 1.0f);
+    return vec4(across.x, across.y, across.z, mean.w < 0.0f ? -instance.handedness : instance.handedness);
 }
 
 // Edges for the surface gradient of a value given at the corners, per metre, by its differences along the two

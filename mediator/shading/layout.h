@@ -28,7 +28,7 @@ static_assert(offsetof(TextureUse, row_u) == 8);
 static_assert(offsetof(TextureUse, row_v) == 16);
 static_assert(offsetof(TextureUse, offset) == 24);
 
-static_assert(sizeof(Material) == 204);
+static_assert(sizeof(Material) == 208);
 static_assert(offsetof(Material, base_color) == 0);
 static_assert(offsetof(Material, emission) == 16);
 static_assert(offsetof(Material, metallic) == 28);
@@ -47,6 +47,7 @@ static_assert(offsetof(Material, unlit) == 188);
 static_assert(offsetof(Material, thin) == 192);
 static_assert(offsetof(Material, extras) == 196);
 static_assert(offsetof(Material, surface_shader) == 200);
+static_assert(offsetof(Material, filters_color) == 204);
 
 static_assert(sizeof(MaterialExtras) == 424);
 static_assert(offsetof(MaterialExtras, specular_color) == 0);
@@ -116,7 +117,7 @@ static_assert(offsetof(Motion, key_intervals) == 4);
 static_assert(offsetof(Motion, max_abs_linear) == 8);
 static_assert(offsetof(Motion, max_abs_translation) == 12);
 
-static_assert(sizeof(Instance) == 116);
+static_assert(sizeof(Instance) == 120);
 static_assert(offsetof(Instance, mesh) == 0);
 static_assert(offsetof(Instance, material) == 4);
 static_assert(offsetof(Instance, object) == 8);
@@ -128,6 +129,7 @@ static_assert(offsetof(Instance, alpha_tested) == 100);
 static_assert(offsetof(Instance, layers) == 104);
 static_assert(offsetof(Instance, motion) == 108);
 static_assert(offsetof(Instance, medium) == 112);
+static_assert(offsetof(Instance, handedness) == 116);
 
 static_assert(sizeof(Medium) == 176);
 static_assert(offsetof(Medium, absorption) == 0);

@@ -32,12 +32,19 @@ inline uint next_light_node(IN(Scene) scene, uint at) {
 WITH_CONTEXT inline void add_area_light(IN(Context) context, INOUT(Path) path, IN(Ray) ray, float near,
                                         float far, IN(Emitter) emitter, IN(LightSource) light) {
     if (!is_seen(context.scene, light, context.view.layers)) return;
-    const LightHit hit =
+    LightHit hit =
         light.kind == LightSphere ? hit_sphere(light, ray) : hit_quad(light, emitter.inverse_root_area, ray);
     if (!hit.is_hit || !(hit.distance > near) || !(hit.distance < far)) return;
+    const float distance = hit.distance - near;
     connect_light(path.found, context.view, path.probability * light.intensity);
     float other = 0.0f;
     if (path.bsdf_pdf > 0.0f) {
+        if ((context.scene.features & FeatureThinGlass) != 0u) {
+            // The ray may start at a thin wall, but the light was sampled from the path's last vertex.
+            const Ray whole = Ray(path.last_position, ray.direction);
+            hit = light.kind == LightSphere ? hit_sphere(light, whole)
+                                            : hit_quad(light, emitter.inverse_root_area, whole);
+        }
         const Receiver receiver = Receiver(path.last_position, path.last_normal, vec3(0.0f));
         other = context.scene.tree_probability * leaf_probability(context.scene, emitter.node, receiver) *
                 hit.pdf;
@@ -46,7 +53,7 @@ WITH_CONTEXT inline void add_area_light(IN(Context) context, INOUT(Path) path, I
     vec3 arriving = path.throughput * light.intensity * weight;
     if ((context.scene.features & FeatureMedia) != 0u) {
         arriving *= transmittance(context.scene, path.containing_media, ray.origin + near * ray.direction,
-                                  ray.direction, hit.distance - near, context.time);
+                                  ray.direction, distance, context.time);
     }
     add_light(path.found, context.view, arriving, path.class_info);
     log_emission(context, light.intensity, ray.direction);

@@ -74,6 +74,13 @@ inline bool stops_at(IN(Scene) scene, uint instance, uint triangle, vec2 b, uint
                        scene.meshes.items[scene.instances.items[instance].mesh], instance, triangle, b, seed);
 }
 
+// Whether light may go straight through the instance, as through a pane of clear glass. On the way to a light
+// such walls do not stop a ray but attenuate it (transport.h).
+inline bool is_thin_wall(IN(Scene) scene, uint instance) {
+    if ((scene.features & FeatureThinGlass) == 0u) return false;
+    return (scene.materials.items[scene.instances.items[instance].material].thin & ThinClear) != 0u;
+}
+
 SHADING_END
 
 #endif

@@ -27,7 +27,7 @@ inline MediumTraversal new_traversal(vec3 origin) {
 // scattering beyond the maximum path depth.
 inline uint segment_kind(IN(Path) path, uint stage, bool passes, uint max_scatter_events) {
     if (stage == StageBranch && !passes) return SegmentScatters;
-    return stage == StagePath && path.vertex < max_scatter_events ? SegmentMayScatter : SegmentTransmits;
+    return stage == StagePath && may_scatter(path, max_scatter_events) ? SegmentMayScatter : SegmentTransmits;
 }
 
 // The equiangular sample uses a disjoint range of RNG dimensions: those of a vertex index that no path

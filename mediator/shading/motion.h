@@ -45,15 +45,20 @@ inline Ray ray_in_object(IN(Affine3x4) place, vec3 origin, vec3 direction) {
                vec3(dot(x, direction), dot(y, direction), dot(z, direction)) * inverse);
 }
 
-// Cofactors times a power of two, as in Instance::normals.
-inline mat3 normal_transform(IN(mat3) linear) {
+// The normals and the handedness of an Instance.
+struct NormalTransform {
+    mat3 normals;  // cofactors times a power of two
+    float handedness;
+};
+
+inline NormalTransform normal_transform(IN(mat3) linear) {
     const float scale = unit_scale(extent_of(max(max(abs(linear[0]), abs(linear[1])), abs(linear[2]))));
     const vec3 x = linear[0] * scale;
     const vec3 y = linear[1] * scale;
     const vec3 z = linear[2] * scale;
     const vec3 across = cross(y, z);
     const float side = dot(x, across) < 0.0f ? -1.0f : 1.0f;
-    return mat3(side * across, side * cross(z, x), side * cross(x, y));
+    return NormalTransform(mat3(side * across, side * cross(z, x), side * cross(x, y)), side);
 }
 
 inline bool is_static(IN(Scene) scene, int motion) {
@@ -66,7 +71,9 @@ inline Instance instance_in_motion(IN(Scene) scene, IN(Instance) instance, float
     Instance moved = instance;
     moved.linear = place.linear;
     moved.translation = place.translation;
-    moved.normals = normal_transform(place.linear);
+    const NormalTransform turn = normal_transform(place.linear);
+    moved.normals = turn.normals;
+    moved.handedness = turn.handedness;
     return moved;
 }
 

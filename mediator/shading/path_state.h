@@ -32,7 +32,7 @@ struct FirstHit {
 
 // The purpose of a ray.
 inline constexpr uint RayExtends = 0u;   // extends the path to its next vertex
-inline constexpr uint RayConnects = 1u;  // a shadow ray through boundaries without a surface
+inline constexpr uint RayConnects = 1u;  // a shadow ray through boundaries without a surface and thin walls
 inline constexpr uint RayResumes = 2u;   // was traced before; now continues to its end
 
 // Where it ends.
@@ -98,12 +98,13 @@ WITH_CONTEXT inline void cross_medium(IN(Context) context, IN(PathState) state, 
 WITH_CONTEXT inline PathEvent next_event(IN(Context) context, INOUT(PathState) state,
                                          IN(FirstHit) first_hit) {
     const bool opens = (context.scene.features & FeatureIndexMatchedMedia) != 0u;
+    const bool connects = opens || (context.scene.features & FeatureThinGlass) != 0u;
     const bool has_media = (context.scene.features & FeatureMedia) != 0u;
     const bool scatters = (context.scene.features & FeatureScattering) != 0u;
     PathEvent event;
     event.purpose = RayExtends;
     if (scatters && state.deferred.is_active) event.purpose = RayResumes;
-    if (opens && state.connection.is_open) event.purpose = RayConnects;
+    if (connects && state.connection.is_open) event.purpose = RayConnects;
     const uint seed = event.purpose == RayConnects ? state.connection.seed : closest_seed(state.path);
     if (event.purpose == RayResumes) {
         event.hit = state.deferred.hit;
@@ -140,6 +141,12 @@ WITH_CONTEXT inline PathEvent next_event(IN(Context) context, INOUT(PathState) s
     if (event.segment.scatters) event.kind = EventScattering;
     if (scatters && event.light.is_equiangular) event.kind = EventEquiangular;
     return event;
+}
+
+// A connection may go on through what it meets.
+WITH_CONTEXT inline bool meets_thin_wall(IN(Context) context, IN(PathEvent) event) {
+    if ((context.scene.features & FeatureThinGlass) == 0u) return false;
+    return event.kind == EventSurface && !event.arrives && is_thin_wall(context.scene, event.hit.instance);
 }
 
 // Ends a connection, at its light or at a surface; false: the path ends as well.

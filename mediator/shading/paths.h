@@ -27,6 +27,7 @@ struct SpecularChain {
 struct Path {
     Sampler numbers;
     uint vertex;  // scattering events so far
+    uint walls;   // of them straight through thin walls: no scattering, and not limited
     vec3 throughput;
     float probability;  // of this branch, if all branches are followed
     float bsdf_pdf;     // of its direction; 0 = from the camera or a perfect specular
@@ -50,13 +51,18 @@ inline PathSample empty_path_sample() {
 }
 
 inline Path start_path(IN(Sampler) numbers) {
-    return Path(numbers, 0u, vec3(1.0f), 1.0f, 0.0f, vec3(0.0f), vec3(0.0f), RayCone(0.0f, 0.0f),
+    return Path(numbers, 0u, 0u, vec3(1.0f), 1.0f, 0.0f, vec3(0.0f), vec3(0.0f), RayCone(0.0f, 0.0f),
                 SpecularChain(false, -1), no_media(), direct_class_info(), empty_path_sample(), 0u);
 }
 
 // Red, green or blue: in turn, from sample to sample.
 inline uint channel_of(IN(Sampler) numbers) {
     return (numbers.index % 3u + numbers.seed % 3u) % 3u;
+}
+
+// Whether the path may scatter once more.
+inline bool may_scatter(IN(Path) path, uint max_scatter_events) {
+    return path.vertex - path.walls < max_scatter_events;
 }
 
 // Seeds of the two kinds of rays at a vertex, for surfaces with alpha.

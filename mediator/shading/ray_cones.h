@@ -4,9 +4,12 @@
 #include "mediator/shading/maths.h"
 #include "mediator/shading/triangle_points.h"
 
-// Footprints of paths, for texture filtering only (ray cones: Akenine-Moeller et al. 2021). The width of
-// sample i is that of the whole pixel divided by sqrt(i + 1): first samples see prefiltered textures, and the
-// mean of many samples still converges to that of point samples.
+// Footprints of paths, for the filtering of colours only (ray cones: Akenine-Moeller et al. 2021). The width
+// of sample i is that of the whole pixel divided by sqrt(i + 1): first samples see prefiltered colours, and
+// the mean of many samples still converges to that of point samples. Until then the film is biased: sample i
+// is blurred over its footprint, so that at an edge the mean of N samples is off by at most the contrast times
+// the mean of 1 / (2 sqrt(i + 1)), which is less than 1 / sqrt(N). Whatever light does not depend on linearly
+// is looked up at points (Material::filters_color), since blurring it would bias whole surfaces.
 SHADING_BEGIN
 
 struct RayCone {

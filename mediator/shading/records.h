@@ -49,6 +49,9 @@ struct TextureUse {
     vec2 offset;
 };
 
+// No refraction and no interior medium; light may go straight through, as through a pane of clear glass.
+inline constexpr uint ThinWalled = 1u, ThinClear = 2u;
+
 // As scene::Material; every value is factor x texture.
 struct Material {
     vec4 base_color;
@@ -66,9 +69,10 @@ struct Material {
     uint alpha_mode;
     uint double_sided;  // 1 or 0, as all boolean fields
     uint unlit;
-    uint thin;           // thin-walled: no refraction, no interior medium
+    uint thin;           // bits: ThinWalled, ThinClear
     int extras;          // index; -1 = none
     int surface_shader;  // index; -1 = none
+    uint filters_color;  // the colour is the only texture, and is filtered over the footprint (ray_cones.h)
 };
 
 // Rare parameters, kept out of line. Their textures are looked up in a loop: unrolled lookups would dominate
@@ -172,10 +176,11 @@ struct Instance {
     mat3 linear;    // world from object
     vec3 translation;
     mat3 normals;       // cofactors of `linear` times a power of two: they turn normals, to their own side
-    uint alpha_tested;  // hits need the alpha test (stops_at)
+    uint alpha_tested;  // hits need a test: stops_at, and is_thin_wall on the way to a light
     uint layers;        // not there for views that see none of them
     int motion;         // index; -1 = static
     int medium;         // index; -1 = no interior medium
+    float handedness;   // of `linear`: 1, or -1 where it mirrors
 };
 
 inline constexpr uint MediumAbsorption = 0u, MediumScattering = 1u, MediumEmission = 2u,
@@ -269,6 +274,8 @@ inline constexpr uint FeatureTextures = 1u, FeatureNormalMaps = 2u, FeatureAlpha
 // Rare lobes, and whether any material has extras.
 inline constexpr uint FeatureCoat = 4096u, FeatureSheen = 8192u, FeatureRoughGlass = 16384u,
                       FeatureExtras = 32768u, FeatureIridescence = 0x8000000u;
+// Thin walls that light may go straight through (ThinClear).
+inline constexpr uint FeatureThinGlass = 512u;
 // Of a scene and view: some objects are in none of the view's layers.
 inline constexpr uint FeatureLayers = 256u;
 // More than one emitter; sphere and quad lights; directional lights with an angular diameter (sun disks).

@@ -22,12 +22,11 @@ inline float relative_index(float index, bool front) {
 // `front`: whether the front face is hit; the inside is behind it. `index`: of the shader (material_eval.h,
 // add_extras).
 inline SurfaceShaderLobes shader_lobes_at(IN(Scene) scene, uint index, IN(Mesh) mesh, uvec3 corners, vec2 b,
-                                          float footprint, vec3 diffuse, bool front, float cos_out) {
+                                          vec3 diffuse, bool front, float cos_out) {
     vec4 texels[SurfaceShaderTextureCount];
     NO_UNROLL
     for (uint i = 0u; i < SurfaceShaderTextureCount; ++i) {
-        texels[i] = texel_or_white(scene, scene.surface_shaders.items[index].textures[i], mesh, corners, b,
-                                   footprint);
+        texels[i] = texel_or_white(scene, scene.surface_shaders.items[index].textures[i], mesh, corners, b);
     }
     const SurfaceShaderParams shader = scene.surface_shaders.items[index];
     const vec3 n = shader.index_of_refraction;
@@ -65,13 +64,13 @@ inline mat3 shader_frame(IN(Instance) instance, IN(SurfaceShaderParams) shader, 
 // The front's normal after normal map and height map; with both, heights are relative to the mapped normal.
 inline vec3 shader_normal(IN(Scene) scene, IN(Instance) instance, IN(SurfaceShaderParams) shader,
                           IN(TextureUse) map, IN(Triangle) t, IN(Mesh) mesh, uvec3 corners, vec2 b,
-                          float footprint, vec3 normal) {
+                          vec3 normal) {
     const bool mapped = is_used(scene, map), raised = is_used(scene, shader.height_texture);
     if (!mapped && !raised) return normal;
     const EdgesInWorld edges = edges_in_world(instance, t);
     vec3 result = normal;
     if (mapped) {
-        const vec3 texel = vec3(texel_of(scene, map, mesh, corners, b, footprint));
+        const vec3 texel = vec3(texel_of(scene, map, mesh, corners, b, 0.0f));
         const vec3 n = texel * shader.normal_scale + shader.normal_bias;
         if (shader.normal_space == NormalObject) {
             result = direction_of(instance.normals * n, normal);

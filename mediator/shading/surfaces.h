@@ -27,8 +27,9 @@ struct Surface {
     float time;       // of the path
     int environment;  // index of the surface shader whose environment perfect speculars see; -1 = none
     bool scatters;
-    uint medium;  // instance of the medium that it bounds; NoInstance = none
-    bool enters;  // whether a ray that passes through enters the medium
+    bool is_thin_wall;  // its refraction, if any, leads straight on
+    uint medium;        // instance of the medium that it bounds; NoInstance = none
+    bool enters;        // whether a ray that passes through enters the medium
 };
 
 // The containing media of a ray that leaves the surface in this direction.
@@ -47,13 +48,13 @@ inline vec3 to_world(IN(Surface) surface, vec3 local) {
 
 // The shading normal after the normal map.
 inline vec3 mapped_normal(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(TextureUse) map,
-                          float scale, uvec3 corners, vec2 b, float footprint, vec3 normal) {
+                          float scale, uvec3 corners, vec2 b, vec3 normal) {
     if ((scene.features & FeatureNormalMaps) == 0u || !is_used(scene, map)) return normal;
     const vec4 tangent4 = tangent_at(instance, mesh, corners, b, normal);
     if (tangent4.w == 0.0f || (mesh.arrays & (MeshTexCoords | MeshTexCoords1)) == 0u) return normal;
     const vec3 tangent = vec3(tangent4);
     const vec3 bitangent = cross(normal, tangent) * tangent4.w;
-    const vec3 texel = vec3(texel_of(scene, map, mesh, corners, b, footprint));
+    const vec3 texel = vec3(texel_of(scene, map, mesh, corners, b, 0.0f));
     vec3 n = 2.0f * texel - 1.0f;
     n.x *= scale;
     n.y *= scale;
@@ -70,22 +71,21 @@ inline vec3 seen_normal(vec3 normal, vec3 face, vec3 direction) {
 }
 
 inline vec3 shading_normal(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
-                           IN(Triangle) t, uvec3 corners, vec2 b, float footprint, vec3 face,
-                           vec3 direction) {
+                           IN(Triangle) t, uvec3 corners, vec2 b, vec3 face, vec3 direction) {
     if (has_surface_shader(scene, material)) {
         const vec3 bumped = shader_normal(
             scene, instance, scene.surface_shaders.items[material.surface_shader], material.normal_texture, t,
-            mesh, corners, b, footprint, vertex_normal(instance, mesh, corners, b, face));
+            mesh, corners, b, vertex_normal(instance, mesh, corners, b, face));
         return seen_normal(bumped, face, direction);
     }
     const vec3 normal = mapped_normal(scene, instance, mesh, material.normal_texture, material.normal_scale,
-                                      corners, b, footprint, vertex_normal(instance, mesh, corners, b, face));
+                                      corners, b, vertex_normal(instance, mesh, corners, b, face));
     return seen_normal(normal, face, direction);
 }
 
 // Frame around the normal; x along the direction of anisotropy, if any.
 inline mat3 shading_frame(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
-                          IN(Triangle) t, uvec3 corners, vec2 b, float footprint, vec3 normal) {
+                          IN(Triangle) t, uvec3 corners, vec2 b, vec3 normal) {
     if (has_surface_shader(scene, material)) {
         const SurfaceShaderParams shader = scene.surface_shaders.items[material.surface_shader];
         if (shader.shininess.x == shader.shininess.y) return frame_around(normal);
@@ -98,7 +98,7 @@ inline mat3 shading_frame(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     if (!(extras.anisotropy > 0.0f)) return frame_around(normal);
     const vec4 tangent4 = tangent_at(instance, mesh, corners, b, normal);
     if (tangent4.w == 0.0f) return frame_around(normal);
-    const vec3 turn = anisotropy_at(scene, extras, mesh, corners, b, footprint);
+    const vec3 turn = anisotropy_at(scene, extras, mesh, corners, b);
     const vec3 tangent = vec3(tangent4);
     const vec3 x = direction_of(tangent * turn.x + cross(normal, tangent) * (tangent4.w * turn.y), tangent);
     return mat3(x, cross(normal, x), normal);
@@ -182,14 +182,13 @@ inline void set_shader_specular(INOUT(Surface) surface, IN(Scene) scene, IN(Surf
 }
 
 inline void set_scattering(INOUT(Surface) surface, IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
-                           IN(Material) material, uvec3 corners, vec2 b, float footprint, vec3 face,
-                           vec3 direction, uvec4 containing_media) {
+                           IN(Material) material, uvec3 corners, vec2 b, vec3 face, vec3 direction,
+                           uvec4 containing_media) {
     const bool front = dot(face, direction) < 0.0f;
     if (has_surface_shader(scene, material)) {
         const uint shader = uint(material.surface_shader);
-        const SurfaceShaderLobes lobes =
-            shader_lobes_at(scene, shader, mesh, corners, b, footprint, surface.albedo, front,
-                            -dot(direction, surface.frame[2]));
+        const SurfaceShaderLobes lobes = shader_lobes_at(scene, shader, mesh, corners, b, surface.albedo,
+                                                         front, -dot(direction, surface.frame[2]));
         fill_shader_bsdf(surface.bsdf, lobes);
         set_shader_specular(surface, scene, lobes, direction);
         if (largest(scene.surface_shaders.items[shader].environment) > 0.0f)
@@ -201,12 +200,12 @@ inline void set_scattering(INOUT(Surface) surface, IN(Scene) scene, IN(Instance)
         n = nested_index_of_refraction(scene, containing_media, surface.medium, surface.enters);
     }
     MaterialSample material_sample =
-        evaluate_material(scene, material, mesh, corners, b, footprint, surface.albedo, front, n);
+        evaluate_material(scene, material, mesh, corners, b, surface.albedo, front, n);
     if ((material_sample.lobes & FeatureCoat) != 0u) {
         const MaterialExtras extras = scene.extras.items[material.extras];
         const vec3 mapped =
             mapped_normal(scene, instance, mesh, extras.coat_normal_texture, extras.coat_normal_scale,
-                          corners, b, footprint, vertex_normal(instance, mesh, corners, b, face));
+                          corners, b, vertex_normal(instance, mesh, corners, b, face));
         material_sample.coat_normal = to_local(surface, seen_normal(mapped, face, direction));
     }
     const Mixture mixture = make_mixture(material_sample);
@@ -233,11 +232,14 @@ inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     surface.geometric_normal = front ? face : -face;
     surface.medium = has_medium(scene, hit.instance) ? hit.instance : NoInstance;
     surface.enters = front;
-    const float footprint = triangle_footprint(scene, instance, triangle, abs(dot(face, direction)), width);
-    surface.frame = shading_frame(
-        scene, instance, mesh, material, triangle, corners, b, footprint,
-        shading_normal(scene, instance, mesh, material, triangle, corners, b, footprint, face, direction));
+    surface.frame =
+        shading_frame(scene, instance, mesh, material, triangle, corners, b,
+                      shading_normal(scene, instance, mesh, material, triangle, corners, b, face, direction));
 
+    const float footprint =
+        material.filters_color != 0u
+            ? triangle_footprint(scene, instance, triangle, abs(dot(face, direction)), width)
+            : 0.0f;
     const vec3 color = vec3(base_color_at(scene, material, mesh, corners, b, footprint));
     surface.albedo = clamp(color, 0.0f, 1.0f);  // vertex colours may exceed 1; albedos may not
     surface.scatters = material.unlit == 0u;
@@ -250,8 +252,9 @@ inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     surface.rough_fraction = 1.0f;
     surface.specular = no_specular();
     surface.environment = -1;
-    set_scattering(surface, scene, instance, mesh, material, corners, b, footprint, face, direction,
-                   containing_media);
+    set_scattering(surface, scene, instance, mesh, material, corners, b, face, direction, containing_media);
+    surface.is_thin_wall = (scene.features & FeatureThinGlass) != 0u && (material.thin & ThinClear) != 0u;
+    if (surface.is_thin_wall) surface.specular.refracted = direction;
     return surface;
 }
 
@@ -290,9 +293,14 @@ inline Surface scattering_place(vec3 position, vec3 direction, float anisotropy,
     surface.time = time;
     surface.environment = -1;
     surface.scatters = true;
+    surface.is_thin_wall = false;
     surface.medium = NoInstance;
     surface.enters = false;
     return surface;
+}
+
+inline bool passes_straight(IN(Surface) surface) {
+    return surface.is_thin_wall && largest(surface.specular.refraction) > 0.0f;
 }
 
 inline bool is_in_medium(IN(Surface) surface) {

@@ -42,7 +42,13 @@ WITH_CONTEXT inline bool leave_vertex(IN(Context) context, INOUT(Path) path, INO
                                       INOUT(uint) stage, IN(Surface) surface,
                                       IN(EquiangularSample) equiangular, INOUT(Connection) connection) {
     add_emission(context, path, ray, surface);
-    if (stage == StageGather) return false;
+    if (stage == StageGather) {
+        if (!passes_straight(surface)) return false;
+        path.throughput *= surface.specular.refraction;
+        ray = leaving(surface, ray.direction);
+        path.containing_media = media_after(context.scene, path.containing_media, surface, ray.direction);
+        return true;
+    }
     Lobe lobe = rough_lobe(path);
     if (stage == StagePath) {
         lobe = choose_lobe(path, surface, lobe);
@@ -56,8 +62,9 @@ WITH_CONTEXT inline bool leave_vertex(IN(Context) context, INOUT(Path) path, INO
         if (!is_in_medium(surface)) path.found.normal += path.probability * surface.frame[2];
     }
     if (!surface.scatters) return false;
-    if (stage == StagePath && !equiangular.is_equiangular && path.vertex >= context.view.max_scatter_events)
-        return false;
+    const bool is_counted = stage == StagePath && !equiangular.is_equiangular;
+    const bool is_straight = lobe.kind == LobeRefraction && passes_straight(surface);
+    if (is_counted && !is_straight && !may_scatter(path, context.view.max_scatter_events)) return false;
     vec3 direction = vec3(0.0f);
     if (lobe.kind == LobeRough) {
         const vec3 wo = to_local(surface, -ray.direction);
@@ -65,7 +72,7 @@ WITH_CONTEXT inline bool leave_vertex(IN(Context) context, INOUT(Path) path, INO
         if (equiangular.is_equiangular) return true;
         if (!scatter(context.scene.energy, context.view, path, surface, wo, lobe, direction)) return false;
     } else {
-        direction = scatter_specular(context, path, surface, lobe);
+        direction = scatter_specular(context, path, surface, lobe, is_straight);
     }
     if (stage == StagePath) {
         const uint end = is_in_medium(surface) ? RouletteAlwaysInMediaFrom : RouletteAlwaysFrom;
@@ -121,6 +128,20 @@ WITH_CONTEXT inline void record_first_hit(IN(Context) context, INOUT(PathSample)
     found.alpha = 1.0f;
 }
 
+// A connection meets a surface; false: the path ends as well.
+WITH_CONTEXT inline bool shade_connection(IN(Context) context, INOUT(PathState) state, IN(Surface) surface,
+                                          IN(PathEvent) event) {
+    if (!passes_straight(surface)) return end_connection(context, state, event);
+    state.connection.light *= surface.specular.refraction;
+    state.connection.intensity *= surface.specular.refraction;
+    state.ray = leaving(surface, state.ray.direction);
+    if (!state.connection.distant) state.ray.direction = state.connection.target - state.ray.origin;
+    state.path.containing_media =
+        media_after(context.scene, state.path.containing_media, surface, state.ray.direction);
+    state.traversal = new_traversal(state.ray.origin);
+    return true;
+}
+
 // False: the path or branch ends.
 WITH_CONTEXT inline bool shade_catcher(IN(Context) context, INOUT(PathState) state, IN(Surface) surface,
                                        IN(Ray) camera) {
@@ -160,7 +181,8 @@ WITH_CONTEXT inline bool shade_scatterer(IN(Context) context, INOUT(PathState) s
         state.path.vertex = state.deferred.vertex;
         goes_on = true;
     }
-    if ((context.scene.features & FeatureIndexMatchedMedia) != 0u && state.connection.is_open) {
+    const bool may_connect = (context.scene.features & (FeatureIndexMatchedMedia | FeatureThinGlass)) != 0u;
+    if (may_connect && state.connection.is_open) {
         goes_on = start_connection(state.connection, state.path, state.ray, goes_on);
     }
     return goes_on;
@@ -171,9 +193,12 @@ WITH_CONTEXT inline bool shade_vertex(IN(Context) context, INOUT(PathState) stat
                                       INOUT(BranchStack) stack, IN(PathEvent) event, IN(Ray) camera) {
     const bool in_medium = event.kind != EventSurface;
     const bool is_equiangular = event.kind == EventEquiangular;
+    const bool connects = (context.scene.features & FeatureThinGlass) != 0u && event.purpose == RayConnects;
+    // Directions of connections have any length. What they pass is looked up at points.
+    const vec3 arriving = connects ? unit_vector(state.ray.direction) : state.ray.direction;
     const float along = is_equiangular ? event.light.distance : event.segment.distance;
     const float distance = in_medium ? state.traversal.segment_distance + along : event.end;
-    if (!is_equiangular)
+    if (!is_equiangular && !connects)
         state.path.cone.width += state.path.cone.spread * (distance - state.traversal.segment_distance);
     // Constructed in place: a surface is large, and copying it would cost more than building it.
     const Surface surface =
@@ -181,8 +206,9 @@ WITH_CONTEXT inline bool shade_vertex(IN(Context) context, INOUT(PathState) stat
                                      state.ray.direction, event.segment.anisotropy,
                                      context.scene.instances.items[state.path.containing_media.x].object,
                                      context.time)
-                  : make_surface(context.scene, event.hit, state.ray.direction, state.path.cone.width,
+                  : make_surface(context.scene, event.hit, arriving, connects ? 0.0f : state.path.cone.width,
                                  state.path.containing_media, context.time);
+    if (connects) return shade_connection(context, state, surface, event);
     log_hit(context, surface, state.path.throughput);
     const bool within_segment = is_equiangular || (in_medium && state.stage == StageBranch);
     if (state.is_first && !within_segment)
@@ -222,7 +248,7 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, IN(Path) start, IN(Ray)
             cross_boundary(context.scene, state.traversal, state.path.containing_media, event.hit, state.ray,
                            context.time);
             goes_on = true;
-        } else if (event.purpose == RayConnects) {
+        } else if (event.purpose == RayConnects && !meets_thin_wall(context, event)) {
             goes_on = end_connection(context, state, event);
         } else if (event.kind == EventMiss) {
             log_miss(context);

@@ -14,8 +14,10 @@
 //   bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, IN(Skip) skip, OUT(Hit) hit);
 //       the closest hit that is not skipped; false if there is none. Distances are in
 //       lengths of the direction.
-//   bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed);
-//       whether anything is hit beyond NearestHit and before `far`, in multiples of the segment's length
+//   bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed,
+//                       OUT(bool) meets_walls);
+//       whether anything but a thin wall (is_thin_wall) is hit beyond NearestHit and before `far`, in
+//       multiples of the segment's length; if not, whether a thin wall is
 // both of which call stops_at with this seed for instances that are alpha_tested. GLSL: declared before this
 // file is included. C++: found in the namespace of the context, as are the functions that log a path when one
 // sample is replayed (probe); they do nothing in shaders.
@@ -124,13 +126,15 @@ WITH_CONTEXT inline void add_emission(IN(Context) context, INOUT(Path) path, IN(
     log_emission(context, surface.emission, ray.direction);
 }
 
-// A connection to a light through medium boundaries without a surface. Its shadow ray is traced segment by
-// segment by the same loop as the path's rays (trace.h).
+// A connection to a light through medium boundaries without a surface, and through thin walls, which attenuate
+// it. Its shadow ray is traced segment by segment by the same loop as the path's rays (trace.h), so that what
+// it passes is multiplied in the order of the ray.
 struct Connection {
     bool is_open;
     vec3 light;      // that arrives, unless the ray is blocked
     vec3 intensity;  // of the light
-    bool distant;    // at infinity; else at distance 1
+    bool distant;    // at infinity; else at distance 1, and
+    vec3 target;     // at this place
     PathClassInfo class_info;
     uint seed;
     Ray resume;  // the path's next ray, if `resumes`, and its containing media
@@ -139,7 +143,7 @@ struct Connection {
 };
 
 inline Connection no_connection() {
-    return Connection(false, vec3(0.0f), vec3(0.0f), false, direct_class_info(), 0u,
+    return Connection(false, vec3(0.0f), vec3(0.0f), false, vec3(0.0f), direct_class_info(), 0u,
                       Ray(vec3(0.0f), vec3(0.0f)), false, no_media());
 }
 
@@ -188,14 +192,16 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
     }
     if (!alone) weight *= power_heuristic(density, bsdf.pdf);
     const vec3 origin = leaving(surface, light.direction).origin;
-    const bool is_open = (context.scene.features & FeatureIndexMatchedMedia) != 0u;
+    bool is_open = (context.scene.features & FeatureIndexMatchedMedia) != 0u;
     const uint seed = shadow_seed(path);
     // Shadow rays have directions of any length.
     const vec3 segment = light.distant ? light.direction : light.target - origin;
     if (!is_open) {
         const float far = light.distant ? infinity() : 1.0f;
         path.rays += 1u;
-        if (trace_occluded(context, origin, segment, far, seed)) return;
+        bool meets_walls = false;
+        if (trace_occluded(context, origin, segment, far, seed, meets_walls)) return;
+        is_open = (context.scene.features & FeatureThinGlass) != 0u && meets_walls;
     }
     vec3 arriving = path.throughput * bsdf.value * light.radiance * (weight / light.pdf);
     const vec3 intensity = equiangular.is_equiangular ? vec3(0.0f) : path.probability * light.intensity;
@@ -208,7 +214,7 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
         media_after(context.scene, path.containing_media, surface, light.direction);
     if (is_open) {
         // Holds the shadow ray until the path's next ray is known (start_connection).
-        connection = Connection(true, arriving, intensity, light.distant, class_info, seed,
+        connection = Connection(true, arriving, intensity, light.distant, light.target, class_info, seed,
                                 Ray(origin, segment), false, containing_media);
         return;
     }
@@ -272,9 +278,11 @@ inline bool scatter(FloatArray energy, IN(View) view, INOUT(Path) path, IN(Surfa
     return true;
 }
 
-// Scatters by a perfect specular lobe; returns the next direction.
+// Scatters by a perfect specular lobe; returns the next direction. Straight through a thin wall nothing
+// changes for the path but its throughput: connections of its last vertex pass the wall as well, so light
+// behind it is found by both.
 WITH_CONTEXT inline vec3 scatter_specular(IN(Context) context, INOUT(Path) path, IN(Surface) surface,
-                                          IN(Lobe) lobe) {
+                                          IN(Lobe) lobe, bool is_straight) {
     const bool reflects = lobe.kind == LobeReflection;
     Refraction next = Refraction(surface.specular.reflection, surface.specular.reflected);
     if (!reflects) {
@@ -283,10 +291,12 @@ WITH_CONTEXT inline vec3 scatter_specular(IN(Context) context, INOUT(Path) path,
     }
     path.chain.environment = surface.environment;
     path.throughput *= next.weight;
+    log_specular(context, reflects, next.direction);
+    if (is_straight) path.walls += 1u;
+    if (is_straight && path.bsdf_pdf > 0.0f) return next.direction;
     path.bsdf_pdf = 0.0f;
     if (path.class_info.scatter_count > 0u) path.class_info.scatter_count += 1u;
     path.class_info.last_is_delta = true;
-    log_specular(context, reflects, next.direction);
     return next.direction;
 }
 

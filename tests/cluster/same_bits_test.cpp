@@ -167,7 +167,7 @@ TEST(Cluster, ANodeOfAnotherRenderRevisionIsRefused) {
     ASSERT_NE(message, nullptr);
     const auto answer = wire::decode_control(message->bytes);
     ASSERT_TRUE(answer && std::holds_alternative<wire::Refusal>(*answer));
-    EXPECT_NE(std::get<wire::Refusal>(*answer).reason.find("render revision 1, yours is of revision 2"),
+    EXPECT_NE(std::get<wire::Refusal>(*answer).reason.find("render revision 2, yours is of revision 3"),
               std::string::npos)
         << std::get<wire::Refusal>(*answer).reason;
 }

@@ -20,9 +20,10 @@ int main(int count, char** words) {
     app.add_option("--peers", settings.peers, "that send them; every fourth has the same role")
         ->capture_default_str();
     bool real_time = false;
-    app.add_flag("--real-time", real_time,
-                 "wait for timeouts by the real clock; without, time stands still while any thread runs, and passes "
-                 "at once when none does");
+    app.add_flag(
+        "--real-time", real_time,
+        "wait for timeouts by the real clock; without, time stands still while any thread runs, and passes "
+        "at once when none does");
     CLI11_PARSE(app, count, words);
     if (!real_time) tessera::test::begin_virtual_time();
     const tessera::test::FuzzReport report = tessera::test::fuzz_cluster(settings);
@@ -34,7 +35,8 @@ int main(int count, char** words) {
         number(settings.seed), number(report.messages), number(report.reached.edits),
         number(report.reached.requests), number(report.reached.frames), number(report.reached.units),
         number(report.edits), number(report.frames), number(report.faults), number(report.peak_memory >> 20),
-        1e3 * report.longest_step_cpu, report.longest_part.c_str(), std::chrono::duration<double>(tessera::test::virtual_time()).count());
+        1e3 * report.longest_step_cpu, report.longest_part.c_str(),
+        std::chrono::duration<double>(tessera::test::virtual_time()).count());
     for (const std::string& violation : report.violations) std::printf("violated: %s\n", violation.c_str());
     return report.violations.empty() ? 0 : 1;
 }

@@ -125,7 +125,7 @@ void RandomPeer::greet() {
         .peer = settings_.role == net::Role::Node ? wire::PeerKind::Node : wire::PeerKind::Client,
         .name = random_.name(settings_.name)};
     hello.backend = "null";
-    hello.kind = "null-1/r1";
+    hello.kind = "null-1/r2";
     hello.channels = frame::ChannelSet::all();
     hello.concurrent_units = 1 + static_cast<std::uint32_t>(random_.below(wire::MaxConcurrentUnits));
     hello.resume_token = random_.chance(50) ? token_ : 0;
@@ -337,7 +337,7 @@ void RandomPeer::adjust(Message& message) {
     }
     if constexpr (std::is_same_v<Message, wire::Hello>) {
         message.protocol = random_.chance(90) ? wire::ProtocolVersion : message.protocol;
-        message.kind = random_.chance(80) ? "null-1/r1" : message.kind;
+        message.kind = random_.chance(80) ? "null-1/r2" : message.kind;
         message.name = random_.name(settings_.name);
         if (settings_.role == net::Role::Node) message.peer = wire::PeerKind::Node;
         message.resume_token = random_.chance(50) ? token_ : random_.extreme();

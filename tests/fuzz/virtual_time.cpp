@@ -195,7 +195,8 @@ int clock_gettime(clockid_t clock, timespec* time) noexcept {
     return 0;
 }
 
-int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock, const timespec* end) {
+int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock,
+                           const timespec* end) {
     if (clock == CLOCK_MONOTONIC && now != 0) return wait(condition, mutex, nanoseconds(*end));
     // That of the C library, for a wait by a real clock.
     timespec real{};
@@ -215,6 +216,7 @@ int clock_nanosleep(clockid_t clock, int flags, const timespec* time, timespec* 
 }
 
 int nanosleep(const timespec* time, timespec*) {
-    return now == 0 ? static_cast<int>(::syscall(SYS_nanosleep, time, nullptr)) : sleep_until(now + nanoseconds(*time));
+    return now == 0 ? static_cast<int>(::syscall(SYS_nanosleep, time, nullptr))
+                    : sleep_until(now + nanoseconds(*time));
 }
 }

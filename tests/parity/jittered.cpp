@@ -44,9 +44,9 @@ bool trace_closest(const JitteredContext& context, const shading::Ray& ray, std:
 }
 
 bool trace_occluded(const JitteredContext& context, const glm::vec3& origin, const glm::vec3& segment,
-                    float far, std::uint32_t seed) {
+                    float far, std::uint32_t seed, bool& meets_walls) {
     const embree::Context& exact = context;
-    return embree::trace_occluded(exact, origin, Jitter(seed, origin)(segment), far, seed);
+    return embree::trace_occluded(exact, origin, Jitter(seed, origin)(segment), far, seed, meets_walls);
 }
 
 }  // namespace

@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <span>
+#include <utility>
 
 #include "mediator/frame/merge.h"
 #include "mediator/frame/resolve.h"
@@ -123,6 +126,40 @@ TEST(Parity, WhereLayersAreHidden) {
     const Counts counts = measure("studio-1 with layers", scene, view);
     EXPECT_GE(counts.control, 1u) << "the control says little";
     EXPECT_LE(counts.vulkan, 3 * counts.control);
+}
+
+// Connections to the light pass two tinted panes under the ceiling, and one in front of a block.
+TEST(Parity, ThroughPanes) {
+    tools::bench::BenchScene scene = bench_scene("cornell");
+    const auto blob = [&](const auto& values) {
+        scene.blobs.push_back(std::make_shared<scene::Blob>(std::as_bytes(std::span(values))));
+        return scene::reference(*scene.blobs.back());
+    };
+    scene::Root root = *scene.content.find_as<scene::Root>(scene::RootId);
+    std::vector<scene::Entry> entries;
+    ObjectId next{1000};
+    const auto add = [&](scene::Object object) {
+        entries.push_back(scene::Create{next, std::move(object)});
+        return std::exchange(next, ObjectId{next.value + 1});
+    };
+    const ObjectId glass = add(scene::Material{.base_color = {0.9f, 0.8f, 0.7f, 1.0f},
+                                               .roughness = 0.0f,
+                                               .double_sided = true,
+                                               .transmission = 1.0f});
+    const auto pane = [&](const std::array<glm::vec3, 4>& corners) {
+        root.children.push_back(
+            add(scene::Geometry{.material = glass,
+                                .indices = blob(std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}),
+                                .positions = blob(std::vector<glm::vec3>(corners.begin(), corners.end()))}));
+    };
+    pane({{{-0.9f, 1.7f, -0.9f}, {0.9f, 1.7f, -0.9f}, {0.9f, 1.7f, 0.9f}, {-0.9f, 1.7f, 0.9f}}});
+    pane({{{-0.5f, 1.5f, -0.5f}, {0.9f, 1.6f, -0.5f}, {0.9f, 1.6f, 0.9f}, {-0.5f, 1.5f, 0.9f}}});
+    pane({{{-0.9f, 0.1f, 0.8f}, {0.2f, 0.1f, 0.8f}, {0.2f, 1.3f, 0.8f}, {-0.9f, 1.3f, 0.8f}}});
+    entries.push_back(
+        scene::Update{scene::RootId, scene::Fields<scene::Root>(&scene::Root::children).bits(), root});
+    ASSERT_TRUE(scene.content.apply_entries(entries));
+    const Counts counts = measure("cornell with panes", scene, square_view(scene, Size));
+    EXPECT_LE(counts.vulkan, 3 * counts.control + 3);
 }
 
 TEST(Parity, ThroughALensAndWithParallelRays) {

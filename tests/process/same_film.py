@@ -53,6 +53,11 @@ def cases(filters: list[str]) -> list[Case]:
             chosen = ["--renderer", renderer]
             listed.append(Case(f"{renderer} {scene}", scene, chosen + sized(160, 90, 16)))
             listed.append(Case(f"vulkan {renderer} {scene}", scene, chosen + ["--backend", "vulkan"] + sized(48, 27, 4)))
+    noon = ["--env", str(SCENES / "env-noon.exr")]
+    for renderer in ("path", "whitted"):
+        chosen = noon + ["--renderer", renderer]
+        listed.append(Case(f"{renderer} interior-1.glb", "interior-1.glb", chosen + sized(160, 90, 16)))
+        listed.append(Case(f"vulkan {renderer} interior-1.glb", "interior-1.glb", chosen + ["--backend", "vulkan"] + sized(48, 27, 4)))
     sunset = ["--env", str(SCENES / "env-sunset.exr")]
     listed.append(Case("avx2", "studio-1.glb", sunset + ["--reproducible"] + sized(96, 54, 16)))
     listed.append(Case("lens", "studio-1.glb", environment + ["--lens-radius", "0.05"] + sized(96, 54, 16)))

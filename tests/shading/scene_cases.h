@@ -34,6 +34,7 @@ struct Case {
 inline Path path_in(IN(Inputs) x) {
     Path path = start_path(Sampler(x.a, x.d));
     path.vertex = x.c % 6u;
+    path.walls = x.d % (path.vertex + 1u);
     path.throughput = x.color;
     path.probability = x.transmission;
     path.bsdf_pdf = x.c % 3u == 0u ? 0.0f : x.pdf;
@@ -187,7 +188,7 @@ inline float covered_area(IN(Case) c, float cosine, float width) {
 inline Surface with_scattering(IN(Case) c) {
     Surface surface = c.surface;
     set_scattering(surface, c.context.scene, c.instance, c.mesh, c.material, c.corners, c.hit.barycentric,
-                   0.25f, c.surface.geometric_normal, c.ray.direction, no_media());
+                   c.surface.geometric_normal, c.ray.direction, no_media());
     return surface;
 }
 inline Surface coated(IN(Case) c, IN(Inputs) x) {
@@ -212,7 +213,7 @@ inline EdgesInWorld edges_of(IN(Case) c) {
 inline vec3 bumped_normal(IN(Case) c, IN(Inputs) x) {
     if (!has_area(edges_in_world(c.instance, c.triangle))) return x.n;
     return shader_normal(c.context.scene, c.instance, c.shader, c.use, c.triangle, c.mesh, c.corners,
-                         x.weights, x.metallic, x.n);
+                         x.weights, x.n);
 }
 // Relative to the size of its terms.
 inline vec3 gradient_of(IN(Case) c, vec2 steps) {
@@ -221,8 +222,8 @@ inline vec3 gradient_of(IN(Case) c, vec2 steps) {
     return area > 0.0f ? surface_gradient(edges, steps.x, steps.y) * (area / edges.scale) : vec3(0.0f);
 }
 inline SurfaceShaderLobes shader_here(IN(Case) c, IN(Inputs) x) {
-    return shader_lobes_at(c.context.scene, x.d % SurfaceShaderCount, c.mesh, c.corners, x.weights,
-                           x.metallic, x.color, x.c % 2u == 0u, x.wo.z);
+    return shader_lobes_at(c.context.scene, x.d % SurfaceShaderCount, c.mesh, c.corners, x.weights, x.color,
+                           x.c % 2u == 0u, x.wo.z);
 }
 // On a surface without anything else.
 inline Specular shader_specular(IN(Case) c, IN(Inputs) x) {
@@ -325,10 +326,10 @@ inline Step scattered(IN(Case) c) {
                            step.ray.direction);
     return step;
 }
-inline Step scattered_specular(IN(Case) c, uint kind) {
+inline Step scattered_specular(IN(Case) c, uint kind, bool is_straight) {
     Step step = first_step(c);
     step.lobe.kind = kind;
-    step.ray.direction = scatter_specular(c.context, step.path, c.surface, step.lobe);
+    step.ray.direction = scatter_specular(c.context, step.path, c.surface, step.lobe, is_straight);
     return step;
 }
 inline Step survivor(IN(Case) c, float choice) {

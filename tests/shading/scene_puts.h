@@ -82,6 +82,7 @@ inline void put(INOUT(Outputs) y, IN(Surface) surface) {
     put(y, surface.triangle);
     put(y, surface.light);
     put(y, surface.scatters);
+    put(y, surface.is_thin_wall);
 }
 inline void put(INOUT(Outputs) y, IN(ChildProbabilities) probabilities) {
     put(y, probabilities.first);
@@ -144,6 +145,7 @@ inline void put(INOUT(Outputs) y, IN(PathSample) found) {
 inline void put(INOUT(Outputs) y, IN(Path) path) {
     put(y, path.numbers);
     put(y, path.vertex);
+    put(y, path.walls);
     put(y, path.throughput);
     put(y, path.probability);
     put(y, path.bsdf_pdf);

@@ -50,7 +50,9 @@ inline bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, IN(Skip) 
     return is_ray(ray.origin, ray.direction) && (bits & 7u) != 0u && !skips(skip, hit.instance, hit.distance);
 }
 
-inline bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed) {
+inline bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed,
+                           OUT(bool) meets_walls) {
+    meets_walls = (hash_u32(seed) & 4u) == 0u;
     if (!is_ray(origin, segment) || !(far > 0.0f) || context.scene.instance_count == 0u) return false;
     return (hash_u32(seed) & 3u) == 0u;
 }

@@ -108,9 +108,10 @@ std::vector<Material> make_materials(Generator& random) {
                           .emission_texture = use_of(i == 2 ? 2 : -1, random),
                           .alpha_mode = i % 3u,
                           .double_sided = i % 2u,
-                          .thin = i % 4u == 1u ? 1u : 0u,
+                          .thin = i % 4u == 1u ? ThinWalled | (i % 8u == 1u ? ThinClear : 0u) : 0u,
                           .extras = i % 2u == 0u ? int(i / 2u) : -1,
-                          .surface_shader = i == 1 ? 0 : -1};
+                          .surface_shader = i == 1 ? 0 : -1,
+                          .filters_color = i % 2u};
         if (i == 2 || i == 6) material.emission = vec3(1.0f, 2.0f, 3.0f);
         materials.push_back(material);
     }
@@ -243,7 +244,8 @@ std::vector<Instance> make_instances(Generator& random) {
                              .normals = normals,
                              .alpha_tested = i % 2u,
                              .motion = -1,
-                             .medium = i == 7u ? -1 : int(i % MediumCount)});
+                             .medium = i == 7u ? -1 : int(i % MediumCount),
+                             .handedness = i % 3u == 1u ? -1.0f : 1.0f});
     }
     return instances;
 }

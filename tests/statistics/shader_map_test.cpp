@@ -99,6 +99,31 @@ TEST(ShaderFrames, FollowTextureCoordinatesWhereThereAreNoTangents) {
     expect_normal(turned, {-red, -green, 1}, "turned by half");
 }
 
+// As glTF has it: tangents are the mesh's, and a mirrored instance shows the mirrored picture.
+TEST(ShaderFrames, AreMirroredWithTheirInstance) {
+    const double red = 408 * Step - 1, green = 1 - 204 * Step;
+    const auto wall = [](Model& model) {
+        scene::Material material;
+        material.normal_texture = texel(model, {204, 102, 255, 255});
+        model.textured_quad(model.material(material), MappedWall, 1.0f, Tangents::Given);
+    };
+    Model plain;
+    wall(plain);
+    expect_normal(plain, {red, green, 1}, "plain");
+    Model mirrored;
+    mirrored.set_frame(glm::scale(glm::dmat4(1.0), {-1.0, 1.0, 1.0}));
+    wall(mirrored);
+    expect_normal(mirrored, {-red, green, 1}, "mirrored");
+    Model upside_down;
+    upside_down.set_frame(glm::scale(glm::dmat4(1.0), {1.0, -1.0, 1.0}));
+    wall(upside_down);
+    expect_normal(upside_down, {red, -green, 1}, "upside down");
+    Model turned;
+    turned.set_frame(glm::scale(glm::dmat4(1.0), {-1.0, -1.0, 1.0}));
+    wall(turned);
+    expect_normal(turned, {-red, -green, 1}, "turned by half");
+}
+
 // Normals of object space turn with the object and, stretched, stay at right angles to what they were.
 TEST(ShaderFrames, ObjectSpaceIsTheObjects) {
     const double x = 408 * Step - 1, y = 204 * Step - 1;

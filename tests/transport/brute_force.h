@@ -87,7 +87,9 @@ inline bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, IN(Skip) 
     return trace_all(context, ray.origin, ray.direction, infinity(), seed, skip, hit);
 }
 
-inline bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed) {
+inline bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed,
+                           OUT(bool) meets_walls) {
+    meets_walls = false;
     Hit hit;
     return trace_all(context, origin, segment, far, seed, skip_nothing(), hit);
 }

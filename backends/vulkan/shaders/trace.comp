@@ -25,7 +25,8 @@ struct Context {
     float time;
     uint64_t pool;  // address; used where the pool is not bound
     uint top;
-    Skip skip;  // of the current ray
+    Skip skip;      // of the current ray
+    bool connects;  // it leads to a light
 };
 
 #ifdef BVH2
@@ -36,13 +37,20 @@ struct Context {
 #define find_hit bvh_trace
 #endif
 
+// Whether the current ray to a light has met thin walls, which do not stop it.
+bool wall_is_met = false;
+
 bool stops_ray(IN(Context) context, IN(Hit) candidate, uint seed) {
+    if ((Features & FeatureThinGlass) != 0u && context.connects && is_thin_wall(context.scene, candidate.instance)) {
+        wall_is_met = true;
+        return false;
+    }
     if ((Features & FeatureIndexMatchedMedia) != 0u && skips(context.skip, candidate.instance, candidate.distance)) return false;
     return stops_at(context.scene, candidate.instance, candidate.triangle, candidate.barycentric, seed);
 }
 
 uint scene_question() {
-    return ((Features & (FeatureAlpha | FeatureIndexMatchedMedia)) != 0u ? BvhAlpha : 0u) | ((Features & FeatureMotion) != 0u ? BvhMotion : 0u);
+    return ((Features & (FeatureAlpha | FeatureIndexMatchedMedia | FeatureThinGlass)) != 0u ? BvhAlpha : 0u) | ((Features & FeatureMotion) != 0u ? BvhMotion : 0u);
 }
 
 uint seen_layers(IN(Context) context) {
@@ -57,10 +65,15 @@ bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, IN(Skip) skip, O
     return hit.instance != NoInstance;
 }
 
-bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed) {
-    return find_hit(BvhItems(context.pool), context.top, origin, segment, NearestHit, far,
-                     BvhAny | scene_question(), seen_layers(context), context.time, context, seed)
-               .instance != NoInstance;
+bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed, OUT(bool) meets_walls) {
+    Context asked = context;
+    asked.connects = true;
+    wall_is_met = false;
+    const bool is_hit = find_hit(BvhItems(context.pool), context.top, origin, segment, NearestHit, far,
+                                 BvhAny | scene_question(), seen_layers(context), context.time, asked, seed)
+                            .instance != NoInstance;
+    meets_walls = wall_is_met;
+    return is_hit;
 }
 
 bool has_specular_trees(IN(Context) context) {
@@ -148,6 +161,7 @@ void main() {
     context.pool = job.pool;
     context.top = job.top;
     context.skip = skip_nothing();
+    context.connects = false;
 
     const uint x = job.x + pixel % job.width, y = job.y + pixel / job.width;
     context.time = sample_time(Features, context.view, x, y, index);

@@ -42,6 +42,21 @@ shading::MaterialExtras make_extras(const scene::Material& m, const Indices& tex
         .anisotropy_texture = make_use(m.anisotropy_texture, textures)};
 }
 
+// Whether its glass, if any, may be smooth: a texture may lower the roughness, and between equal indices of refraction
+// rough glass is clear, too.
+bool may_be_clear(const scene::Material& m) {
+    const bool is_boundary = m.index_of_refraction != 0.0f && shading::is_boundary(m.index_of_refraction) &&
+                             shading::is_boundary(1.0f / m.index_of_refraction);
+    return m.transmission > 0.0f && !m.unlit &&
+           (m.metallic_roughness_texture.texture || shading::is_smooth(m.roughness * m.roughness) ||
+            !is_boundary);
+}
+
+std::uint32_t thin_bits(const scene::Material& m) {
+    if (m.thickness > 0.0f) return 0;
+    return shading::ThinWalled | (may_be_clear(m) ? shading::ThinClear : 0u);
+}
+
 // Whether a material has values that need MaterialExtras.
 bool has_extras(const scene::Material& m) {
     return m.specular != 1.0f || m.specular_color != glm::vec3(1.0f) || m.specular_texture.texture ||
@@ -79,6 +94,18 @@ glm::mat3 scaled(const glm::dmat3& m) {
     }
     if (!(largest > 0.0) || !std::isfinite(largest)) return glm::mat3(m);
     return glm::mat3(m * std::exp2(-std::floor(std::log2(largest))));
+}
+
+// The light of a footprint is that of its mean colour only if nothing else changes with the texture.
+std::uint32_t filters_color(const scene::Material& m) {
+    const bool has_others =
+        m.alpha_mode != scene::AlphaMode::Opaque || m.metallic_roughness_texture.texture ||
+        m.normal_texture.texture || m.transmission_texture.texture || m.specular_texture.texture ||
+        m.specular_color_texture.texture || m.clearcoat_texture.texture ||
+        m.clearcoat_roughness_texture.texture || m.clearcoat_normal_texture.texture ||
+        m.sheen_color_texture.texture || m.sheen_roughness_texture.texture || m.iridescence_texture.texture ||
+        m.iridescence_thickness_texture.texture || m.anisotropy_texture.texture;
+    return m.base_color_texture.texture && !has_others ? 1 : 0;
 }
 
 std::uint32_t features_of(const shading::Material& material, const shading::MaterialExtras* extras,
@@ -145,9 +172,10 @@ shading::Material make_material(const scene::Material& material, const Indices& 
             .alpha_mode = static_cast<std::uint32_t>(material.alpha_mode),
             .double_sided = material.double_sided ? 1u : 0u,
             .unlit = material.unlit ? 1u : 0u,
-            .thin = material.thickness > 0.0f ? 0u : 1u,
+            .thin = thin_bits(material),
             .extras = -1,
-            .surface_shader = -1};
+            .surface_shader = -1,
+            .filters_color = filters_color(material)};
 }
 
 Indices add_materials(SceneTables& tables, const scene::Scene& scene, const Indices& textures) {
@@ -180,7 +208,9 @@ void set_transform(shading::Instance& instance, const glm::dmat4& world_from_obj
     // Cofactors instead of the inverse transpose: correct for singular transforms too, and without a division.
     const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                                glm::cross(linear[0], linear[1]));
-    instance.normals = scaled(glm::determinant(linear) < 0.0 ? -cofactors : cofactors);
+    const bool mirrors = glm::determinant(linear) < 0.0;
+    instance.normals = scaled(mirrors ? -cofactors : cofactors);
+    instance.handedness = mirrors ? -1.0f : 1.0f;
 }
 
 void add_instances(SceneTables& tables, const FlatScene& flat_scene, const MeshCatalog& meshes,
@@ -202,7 +232,9 @@ void add_instances(SceneTables& tables, const FlatScene& flat_scene, const MeshC
         set_transform(instance, source.world_from_object, tables.render_origin);
         instance.motion = add_motion(tables, source.world_from_object, source.motion);
         const shading::Material& record = tables.materials[instance.material];
-        instance.alpha_tested = record.alpha_mode != shading::AlphaOpaque ? 1u : 0u;
+        const bool is_thin_wall = (record.thin & shading::ThinClear) != 0;
+        if (is_thin_wall) tables.scene.features |= shading::FeatureThinGlass;
+        instance.alpha_tested = record.alpha_mode != shading::AlphaOpaque || is_thin_wall ? 1u : 0u;
         tables.scene.features |=
             record.surface_shader >= 0
                 ? features_of(record, tables.surface_shaders[static_cast<std::size_t>(record.surface_shader)])

@@ -68,8 +68,15 @@ shading::Material add_shader(SceneTables& tables, const scene::SurfaceShader& sh
     shading::Material material = make_material(common_part(shader), textures);
     if (shader.normal_format == scene::NormalFormat::Snorm)
         material.normal_texture.texture = signed_texture(tables, material.normal_texture.texture);
+    // Transmission without refraction.
+    if (shader.transmission != glm::vec3(0.0f) && shader.relative_index_of_refraction == glm::vec3(1.0f))
+        material.thin |= shading::ThinClear;
     material.surface_shader = static_cast<int>(tables.surface_shaders.size());
-    tables.surface_shaders.push_back(own_part(shader, textures));
+    const shading::SurfaceShaderParams& own = tables.surface_shaders.emplace_back(own_part(shader, textures));
+    const auto is_used = [](const shading::TextureUse& use) { return use.texture >= 0; };
+    if (std::ranges::any_of(own.textures, is_used) || is_used(own.alpha_texture) ||
+        is_used(own.height_texture))
+        material.filters_color = 0;
     return material;
 }
 

@@ -12,6 +12,7 @@ void mark_shadow_catchers(SceneTables& tables, const scene::Scene& scene, const 
         instance.light = shading::ShadowCatcher;
         instance.alpha_tested = 1;
         shading::Material& material = tables.materials[instance.material];
+        material.thin &= ~shading::ThinClear;
         if (material.alpha_mode == shading::AlphaOpaque) material.alpha_mode = shading::AlphaBlend;
         tables.scene.features |= shading::FeatureAlpha | shading::FeatureShadowCatcher;
     }

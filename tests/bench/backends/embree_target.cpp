@@ -47,7 +47,9 @@ class EmbreeCaster final : public RayCaster {
     shading::Hit hit_of(const embree::Context& context, const shading::RayQuery& ray) const {
         shading::Hit hit{.instance = shading::NoInstance};
         if (kind_ == RayQueryKind::Any) {
-            if (embree::trace_occluded(context, ray.origin, ray.direction, ray.far, 0)) hit.instance = 0;
+            bool meets_walls = false;
+            if (embree::trace_occluded(context, ray.origin, ray.direction, ray.far, 0, meets_walls))
+                hit.instance = 0;
         } else {
             embree::trace_closest(context, {ray.origin, ray.direction}, 0, shading::skip_nothing(), hit);
         }
