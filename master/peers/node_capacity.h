@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "mediator/base/clock.h"
 #include "mediator/base/ids.h"
 
 namespace tessera::master {
@@ -13,6 +14,7 @@ struct NodeCapacity {
     std::uint32_t free_slots = 0;
     std::uint32_t in_flight = 0;
     double round_trip_seconds = 0.0;  // of messages; 0 = not known
+    TimePoint heartbeat_at{};         // its latest one
 };
 
 }  // namespace tessera::master

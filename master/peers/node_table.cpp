@@ -22,7 +22,8 @@ NodeCapacity NodeRecord::capacity() const {
             .workers = workers,
             .free_slots = slots > on_the_way ? slots - on_the_way : 0,
             .in_flight = static_cast<std::uint32_t>(state.in_flight.size()) + on_the_way,
-            .round_trip_seconds = round_trip_seconds};
+            .round_trip_seconds = round_trip_seconds,
+            .heartbeat_at = heartbeat_at};
 }
 
 std::optional<wire::OpenView> NodeRecord::opening(const view::View& view, Duration hold_film) {

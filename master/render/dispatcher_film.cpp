@@ -41,12 +41,12 @@ void Dispatcher::malformed_film(NodeRecord& node, const std::string& problem, st
 Dispatcher::Taken Dispatcher::take(const MergeReport& report, TimePoint now) {
     film_is_taken(report.node, report.bytes);
     confirm_cancelled(report.unit, now);  // it was finished already
-    if (Active* merged_into = holder(report.unit)) merged_into->scheduler.merge_ended();
+    Active* origin = holder(report.unit);
+    if (origin != nullptr) origin->scheduler.merge_ended();
     if (!report.failure.empty()) {
         events_({wire::Severity::Error, "film was lost, and is rendered again: " + report.failure});
         verifier_.end(report.unit, report.node);
-        if (Active* pass = active(report.view))
-            pass->scheduler.end_film(report.node, report.tile, report.block, Fate::Lost);
+        if (origin != nullptr) origin->scheduler.end_film(report.node, report.tile, report.block, Fate::Lost);
         return Taken::Dropped;
     }
     if (Verifier::is_verification(report.view)) {

@@ -12,6 +12,7 @@ Forecast::Forecast(const UnitLedger& ledger, std::span<const NodeCapacity> nodes
         holders_.push_back({.node = node.node,
                             .workers = std::max(1u, node.workers),
                             .round_trip = node.round_trip_seconds,
+                            .heartbeat_at = node.heartbeat_at,
                             .items = {}});
     std::ranges::sort(holders_, {}, &Holder::node);
     for (const auto& [id, unit] : ledger.open()) {
@@ -30,6 +31,7 @@ Forecast::Forecast(const UnitLedger& ledger, std::span<const NodeCapacity> nodes
             Awaited& unit = awaited_[item.awaited];
             unit.done = std::min(unit.done, item.end);
             unit.all_are_late = unit.all_are_late && one.is_late;
+            unit.all_are_slow = unit.all_are_slow && one.is_slow;
         }
     }
 }
@@ -52,6 +54,7 @@ void Forecast::foresee(Holder& holder, double slack, TimePoint now) {
     const double late = -(last + 0.5 * holder.round_trip);
     holder.is_late = !holder.items.empty() && late > slack;
     if (!holder.is_late) return;
+    holder.is_slow = late - seconds(now - holder.heartbeat_at) > slack;
     // What has taken that much longer than expected may take as long again.
     for (Item& item : holder.items) item.end = std::max(item.expected, late) + 0.5 * holder.round_trip;
 }

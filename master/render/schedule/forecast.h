@@ -18,6 +18,7 @@ class Forecast {
         const UnitLedger::Unit* unit = nullptr;
         double done = Never;       // s from now, when its film arrives from the first of its holders
         bool all_are_late = true;  // its holders
+        bool all_are_slow = true;  // the same, and each has sent a heartbeat since: none has died unnoticed
     };
 
     Forecast(const UnitLedger& ledger, std::span<const NodeCapacity> nodes, const Balancer& balancer,
@@ -31,7 +32,7 @@ class Forecast {
     // s until film of that many pixel samples arrives from the node, if it begins at once.
     static double expected_seconds(const Balancer& balancer, const NodeCapacity& node, std::uint64_t samples);
     // It was dealt to one more node, and is no longer what arrives last.
-    void dealt_again(std::size_t awaited) { awaited_[awaited] = {awaited_[awaited].unit, 0.0, false}; }
+    void dealt_again(std::size_t awaited) { awaited_[awaited] = {awaited_[awaited].unit, 0.0, false, false}; }
 
   private:
     // Others have rendered it, and its holder, which was asked to stop, has not said that it has.
@@ -45,7 +46,8 @@ class Forecast {
         NodeId node;
         std::uint32_t workers = 1;
         double round_trip = 0.0;
-        bool is_late = false;
+        TimePoint heartbeat_at{};
+        bool is_late = false, is_slow = false;
         std::vector<Item> items;
     };
     Holder& holder(NodeId node);

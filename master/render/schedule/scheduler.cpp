@@ -246,13 +246,14 @@ std::optional<Assignment> Scheduler::duplicate(
     std::optional<std::size_t> best;
     double latest = 0.0;
     for (std::size_t i = 0; i < awaited.size(); ++i) {
-        const auto& [unit, done, all_are_late] = awaited[i];
+        const auto& [unit, done, all_are_late, all_are_slow] = awaited[i];
         if (done < latest || (unit->holders.size() > 1 && !all_are_late)) continue;
         if (unit->holders.contains(node.node) || (unit->trouble && unit->trouble->has_failed_on(node.node)))
             continue;
-        // Samples that may have cost a node go to one node at a time, see DoubtfulTiles, unless that has become slow.
+        // Samples that may have cost a node go to one node at a time, see DoubtfulTiles, unless that has become slow: it may
+        // have died of them as well, which is noticed with the next heartbeat.
         const std::size_t lives = ledger_.lives(unit->trouble);
-        if (lives > 1 || (lives == 1 && !all_are_late)) continue;
+        if (lives > 1 || (lives == 1 && !all_are_slow)) continue;
         const std::uint64_t samples = unit->unit.block.count() * unit->unit.tile.pixel_count();
         const double mine = Forecast::expected_seconds(turn.balancer, node, samples);
         if (done <= mine + gain || !may_be(awaited[i], mine)) continue;

@@ -145,6 +145,32 @@ TEST(Scheduler, DoubtfulSamplesDoNotWaitForANodeThatTakesNothing) {
     EXPECT_EQ(again[0].node, second.node);
 }
 
+// Samples kill two nodes that have them, and the second death has not been noticed yet: they are not dealt to a third one. A
+// node whose heartbeats go on is slow.
+TEST(Scheduler, DoubtfulSamplesCostNoThirdNodeBeforeADeathIsNoticed) {
+    for (const bool is_slow : {false, true}) {
+        Scheduler scheduler({.window = {0, 0, 8, 8}, .tile = 8, .spp = 1}, ViewId{1}, 1, {1, 1}, UnitId{1},
+                            std::nullopt);
+        Balancer balancer;
+        for (const std::uint64_t node : {1u, 2u, 3u})
+            balancer.measured(NodeId{node}, 1'000'000, std::chrono::seconds(1));
+        const auto at = [](int s) { return TimePoint{std::chrono::seconds(s)}; };
+        const auto nodes = [&](std::uint64_t idle, int heartbeat) {
+            std::vector<NodeCapacity> all;
+            for (std::uint64_t node = 1; node <= idle; ++node)
+                all.push_back(
+                    {.node = NodeId{node}, .free_slots = node == idle, .heartbeat_at = at(heartbeat)});
+            return all;
+        };
+        ASSERT_EQ(scheduler.assign(nodes(1, 1), balancer, at(1)).size(), 1u);
+        ASSERT_EQ(scheduler.assign(nodes(2, 1), balancer, at(10)).size(), 1u) << "the first is late";
+        scheduler.node_gone(
+            {.node = NodeId{1}, .rendering = 1, .has_ended = true, .now = at(11), .describe = {}});
+        const auto third = scheduler.assign(nodes(3, is_slow ? 20 : 10), balancer, at(20));
+        EXPECT_EQ(third.size(), is_slow ? 1u : 0u);
+    }
+}
+
 TEST(Scheduler, PartlyFinishedUnitReturnsItsMissingSamples) {
     Scheduler scheduler({.window = {0, 0, 8, 8}, .tile = 8, .spp = 16, .first_level = 4}, ViewId{1}, 1,
                         {1, 1}, UnitId{1}, std::nullopt);

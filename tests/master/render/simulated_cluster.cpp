@@ -322,7 +322,8 @@ void SimulatedCluster::deal() {
                                .workers = workers,
                                .free_slots = slots - std::min(slots, member.occupied),
                                .in_flight = member.in_flight,
-                               .round_trip_seconds = 2.0 * member.node.settings().latency});
+                               .round_trip_seconds = 2.0 * member.node.settings().latency,
+                               .heartbeat_at = table_.find(member.id)->heartbeat_at});
     }
     for (const Assignment& assignment : scheduler_.assign(capacities_, balancer_, time_point(now_))) {
         Member& member = members_[by_id_.at(assignment.node)];
