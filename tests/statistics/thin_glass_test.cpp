@@ -31,9 +31,11 @@ view::View onto_floor() {
     return view;
 }
 
-// A floor at z = 0, and what is added.
+// A floor, and what is added.
 struct PanedRoom : Model {
-    explicit PanedRoom(float albedo = Albedo) { floor(material(chalk(glm::vec3(albedo))), 100.0f, 0.0f); }
+    explicit PanedRoom(float albedo = Albedo, float height = 0.0f) {
+        floor(material(chalk(glm::vec3(albedo))), 100.0f, height);
+    }
     // Shines down, tilted from the vertical.
     void sun(double tilt, float half_angle = 0.0f) {
         light({.kind = scene::LightKind::Directional,
@@ -90,6 +92,25 @@ TEST_P(PanesInTheSun, PassTheirTransmittanceEach) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Tilts, PanesInTheSun, testing::Values(0.0, 0.6, 1.2, 1.5));
+
+// Two panes an eighth of their height apart, in rooms of a tenth of a millimetre to a hundred kilometres, and far from the
+// origin, where positions have errors of millimetres.
+TEST(ThinGlass, PassesLightAtAnyScaleAndFarAway) {
+    for (const float size : {1e-4f, 1.0f, 1e5f}) {
+        for (const float away : {0.0f, 1e4f}) {
+            PanedRoom room(Albedo, away * size);
+            const ObjectId clear = room.material(pane());
+            for (const float z : {1.0f, 1.125f}) room.floor(clear, 90.0f * size, (away + z) * size);
+            room.sun(0.5);
+            view::View view = small_view({0.0, 0.0, double((away + 0.5f) * size)}, 1e-3);
+            view.max_bounces = 0;
+            const double expected =
+                Albedo / M_PI * SunLight * std::cos(0.5) * std::pow(transmittance(std::cos(0.5)), 2);
+            EXPECT_NEAR(room.light(1, Strategy::Both, view).value, expected, 1e-4 * expected)
+                << size << " " << away;
+        }
+    }
+}
 
 TEST(ThinGlass, ALampShinesThroughItsBulb) {
     PanedRoom room;

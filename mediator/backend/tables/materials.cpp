@@ -42,19 +42,23 @@ shading::MaterialExtras make_extras(const scene::Material& m, const Indices& tex
         .anisotropy_texture = make_use(m.anisotropy_texture, textures)};
 }
 
-// Whether its glass, if any, may be smooth: a texture may lower the roughness, and between equal indices of refraction
-// rough glass is clear, too.
-bool may_be_clear(const scene::Material& m) {
-    const bool is_boundary = m.index_of_refraction != 0.0f && shading::is_boundary(m.index_of_refraction) &&
-                             shading::is_boundary(1.0f / m.index_of_refraction);
-    return m.transmission > 0.0f && !m.unlit &&
-           (m.metallic_roughness_texture.texture || shading::is_smooth(m.roughness * m.roughness) ||
-            !is_boundary);
+// A texture may lower the roughness.
+bool may_be_smooth(float roughness, bool has_texture) {
+    return has_texture || shading::is_smooth(roughness * roughness);
+}
+
+// Whether even rough glass is a delta transmission: between equal indices of refraction, or where there is none.
+bool is_delta_at_any_roughness(float index_of_refraction) {
+    return index_of_refraction == 0.0f || !shading::is_boundary(index_of_refraction) ||
+           !shading::is_boundary(1.0f / index_of_refraction);
 }
 
 std::uint32_t thin_bits(const scene::Material& m) {
     if (m.thickness > 0.0f) return 0;
-    return shading::ThinWalled | (may_be_clear(m) ? shading::ThinClear : 0u);
+    const bool may_be_clear = m.transmission > 0.0f && !m.unlit &&
+                              (may_be_smooth(m.roughness, bool(m.metallic_roughness_texture.texture)) ||
+                               is_delta_at_any_roughness(m.index_of_refraction));
+    return shading::ThinWalled | (may_be_clear ? shading::ThinClear : 0u);
 }
 
 // Whether a material has values that need MaterialExtras.
@@ -116,16 +120,11 @@ std::uint32_t features_of(const shading::Material& material, const shading::Mate
     bool mapped = used(material.normal_texture) && has_tangents;
     bool textured = used(material.base_color_texture) || used(material.metallic_roughness_texture) ||
                     used(material.emission_texture);
-    // A texture may lower the roughness.
-    const bool smooth = used(material.metallic_roughness_texture) ||
-                        shading::is_smooth(material.roughness * material.roughness);
+    const bool smooth = may_be_smooth(material.roughness, used(material.metallic_roughness_texture));
     const bool rough = !shading::is_smooth(material.roughness * material.roughness);
     const bool glass = material.transmission > 0.0f;
     bool specular = (material.metallic > 0.0f || glass) && smooth;
-    // With equal indices of refraction even rough glass is a delta transmission.
-    specular |= glass && (material.index_of_refraction == 0.0f ||
-                          !shading::is_boundary(material.index_of_refraction) ||
-                          !shading::is_boundary(1.0f / material.index_of_refraction));
+    specular |= glass && is_delta_at_any_roughness(material.index_of_refraction);
     std::uint32_t lobes = flag(glass && rough, shading::FeatureRoughGlass);
     if (extras != nullptr) {
         mapped |= used(extras->coat_normal_texture) && has_tangents;
