@@ -38,6 +38,11 @@ std::optional<int> parse_options(int argc, const char* const* argv, MasterOption
                 "percent of the units that another node of the same kind renders again, to compare the bits; "
                 "a node that differs from two others is put into quarantine",
                 options.verify_percent);
+    line.option(
+        "--max-crashes",
+        "nodes that may crash over the same samples before these are left out, and the frame ends with "
+        "the rest; more where machines may be taken away at any time",
+        options.max_crashes);
     cli::add_log_options(line, options.log);
     line.examples({"tessera keys ~/.tessera && tessera-master --keys ~/.tessera",
                    "tessera-master --listen tcp://0.0.0.0:7420 --keys ~/.tessera",
@@ -67,6 +72,8 @@ std::optional<int> parse_options(int argc, const char* const* argv, MasterOption
         return usage("--orphan must be between 0 and 1000000 seconds");
     if (!(options.verify_percent >= 0.0 && options.verify_percent <= 100.0))
         return usage("--verify must be between 0 and 100 percent");
+    if (options.max_crashes < 1 || options.max_crashes > 1000)
+        return usage("--max-crashes must be between 1 and 1000");
     return std::nullopt;
 }
 

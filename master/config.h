@@ -21,6 +21,7 @@ struct MasterOptions {
     std::uint64_t io_threads = 1;
     std::uint64_t memory_mib = 0;
     double verify_percent = 0.0;  // of the film of nodes
+    std::uint32_t max_crashes = 2;
     cli::LogSettings log{.program = "tessera-master"};
 };
 

@@ -51,6 +51,7 @@ int serve(const master::MasterOptions& options) {
     settings.checkpoint_interval =
         std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options.checkpoint_seconds));
     settings.verified_share = options.verify_percent / 100.0;
+    settings.views.max_crashes = options.max_crashes;
     settings.blob_limits.bytes_total = options.blob_quota_mib << 20;
     master::RenderMaster render_master(std::move(channel), std::make_shared<scene::BlobStore>(), clock,
                                        settings, event_log(log));

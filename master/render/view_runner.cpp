@@ -118,7 +118,8 @@ PlanSettings ViewRunner::plan_of(const ViewState& view) const {
     PlanSettings plan{.window = pass.view.window,
                       .tile = choose_tile_edge(view.request.view, view.request.tile),
                       .spp = pass.spp,
-                      .policy = view.request.policy};
+                      .policy = view.request.policy,
+                      .max_crashes = settings_.max_crashes};
     if (pass.kind == Pass::Kind::Coarse) {
         // Enough tiles to keep all workers busy until the end, but none below 8 pixels.
         constexpr std::uint64_t TilesPerWorker = 6;

@@ -22,6 +22,7 @@ struct ViewSettings {
     Duration stop_grace = std::chrono::seconds(2);  // for film of cancelled units
     std::uint32_t failure_limit =
         8;  // tiles that fail before any other has samples: the view cannot be rendered
+    std::uint32_t max_crashes = 2;  // nodes that samples may cost before they are left out
     Duration patience_without_nodes =
         std::chrono::seconds(3);  // before its owner is notified that a view waits
     std::size_t max_views = 60;   // of all members: a node keeps 256, and each view has several passes

@@ -1,6 +1,4 @@
 // The same samples give the same bits on any number of threads, and a stop is honoured.
-#include <time.h>
-
 #include <algorithm>
 #include <cstring>
 #include <random>
@@ -9,6 +7,7 @@
 #include "mediator/frame/block_forest.h"
 #include "mediator/frame/resolve.h"
 #include "tests/contract/filter_cases.h"
+#include "tests/support/cpu_time.h"
 
 namespace tessera::filter::test {
 namespace {
@@ -122,17 +121,11 @@ TEST_P(FilterBits, DoNotDependOnTilesAndTheirOrder) {
 
 // --- stop
 
-// CPU time of this thread, independent of other programs; an arena with one thread runs in its caller.
 template <class Work>
 double seconds_of(const Work& work) {
-    const auto now = [] {
-        timespec t{};
-        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-        return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-    };
-    const double from = now();
+    const double from = tessera::test::thread_cpu_seconds();
     work();
-    return now() - from;
+    return tessera::test::thread_cpu_seconds() - from;
 }
 
 TEST_P(FilterBits, AStopBeforeTheRunCostsLittle) {

@@ -10,6 +10,7 @@
 #include "backends/embree/scene_adapter.h"
 #include "tests/backend/scene_builder.h"
 #include "tests/statistics/scene_model.h"
+#include "tests/support/cpu_time.h"
 
 namespace tessera::embree {
 namespace {
@@ -18,12 +19,6 @@ using scene::Geometry;
 
 constexpr ObjectId MeshId{2}, SkyId{3};
 constexpr std::uint32_t Side = 100;
-
-double cpu_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
 
 std::vector<glm::vec3> waves(double phase) {
     std::vector<glm::vec3> positions;
@@ -108,11 +103,11 @@ TEST(Refit, TakesLessThanHalfOfABuild) {
     Sea refitted(scene::MotionHint::Animated), rebuilt(scene::MotionHint::Unflagged);
     std::vector<double> ratios;
     for (int i = 1; i <= 9; ++i) {
-        const double start = cpu_seconds();
+        const double start = tessera::test::thread_cpu_seconds();
         refitted.deform(0.1 * i);
-        const double between = cpu_seconds();
+        const double between = tessera::test::thread_cpu_seconds();
         rebuilt.deform(0.1 * i);
-        ratios.push_back((between - start) / (cpu_seconds() - between));
+        ratios.push_back((between - start) / (tessera::test::thread_cpu_seconds() - between));
     }
     std::sort(ratios.begin(), ratios.end());
     EXPECT_LT(ratios[4], 0.5);

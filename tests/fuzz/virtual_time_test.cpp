@@ -3,23 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <condition_variable>
-#include <ctime>
 #include <mutex>
 #include <thread>
 #include <vector>
+
+#include "tests/support/cpu_time.h"
 
 namespace tessera::test {
 namespace {
 
 using namespace std::chrono_literals;
 using std::chrono::steady_clock;
-
-// Of this thread; no clock that is virtual.
-double processor_seconds() {
-    timespec time{};
-    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 struct VirtualTime : testing::Test {
     VirtualTime() { begin_virtual_time(); }
@@ -45,7 +39,7 @@ TEST_F(VirtualTime, StandsStillWhileAThreadRuns) {
     std::unique_lock lock(mutex);
     const auto begin = steady_clock::now();
     const std::jthread busy([&] {
-        while (processor_seconds() < 0.2) {
+        while (thread_cpu_seconds() < 0.2) {
         }
         const std::scoped_lock done(mutex);
         is_done = true;

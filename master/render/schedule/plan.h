@@ -24,6 +24,7 @@ struct PlanSettings {
     std::uint32_t first_level = 0;  // the first round has 2^first_level samples
     // How long nodes may hold film back, to merge it with that of further pieces of a claim.
     Duration hold_film = std::chrono::milliseconds(100);
+    std::uint32_t max_crashes = 2;  // nodes that samples may cost before they are left out, see UnitTrouble
 };
 
 // The remaining work of one frame. Rounds double the number of samples (design 1.7); within a round tiles are

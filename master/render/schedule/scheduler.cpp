@@ -36,7 +36,7 @@ Scheduler::Scheduler(const PlanSettings& plan, ViewId view, std::uint64_t revisi
       revision_(revision),
       version_(version),
       deadline_(deadline),
-      ledger_(plan_.tiles(), first_unit) {}
+      ledger_(plan_.tiles(), first_unit, plan.max_crashes) {}
 
 view::WorkUnit Scheduler::make_unit(const Plan::Chunk& chunk) const {
     return {.id = ledger_.next_unit(),

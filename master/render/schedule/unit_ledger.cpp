@@ -45,9 +45,10 @@ bool holds_or_held(const UnitLedger::Unit& unit, NodeId node) {
 
 }  // namespace
 
-UnitLedger::UnitLedger(std::vector<Rect> tiles, UnitId first_unit)
+UnitLedger::UnitLedger(std::vector<Rect> tiles, UnitId first_unit, std::size_t max_crashes)
     : tiles_(std::move(tiles)),
       first_unit_(first_unit),
+      max_crashes_(max_crashes),
       open_of_tile_(tiles_.size()),
       former_of_tile_(tiles_.size()),
       arrived_(tiles_.size()),

@@ -93,7 +93,8 @@ class UnitLedger {
     using Observer = std::function<void(const view::WorkUnit&, NodeId, Fate)>;
 
     // Units have ids from `first_unit` on, in the order of deal().
-    UnitLedger(std::vector<Rect> tiles, UnitId first_unit);
+    // max_crashes: nodes that samples may cost before they are to blame.
+    UnitLedger(std::vector<Rect> tiles, UnitId first_unit, std::size_t max_crashes);
 
     // Called at the end of each node's part in a unit.
     void observe(Observer observer) { observer_ = std::move(observer); }
@@ -119,7 +120,7 @@ class UnitLedger {
     void node_gone(const Loss& loss);
     void came_back(NodeId node) { survivors_.insert(node); }  // a lost one: it had lost its connection
     bool is_settled(const UnitTrouble& trouble) const {
-        return trouble.is_settled(survivors_, other_losses(trouble));
+        return trouble.is_settled(max_crashes_, survivors_, other_losses(trouble));
     }
     // It has cost two nodes, but nothing says that others did not: see UnitTrouble.
     bool is_suspect(const std::shared_ptr<const UnitTrouble>& trouble) const { return lives(trouble) >= 2; }
@@ -172,6 +173,7 @@ class UnitLedger {
 
     std::vector<Rect> tiles_;
     UnitId first_unit_;
+    std::size_t max_crashes_;
     std::vector<Dealt> dealt_;                        // by unit
     std::map<UnitId, std::set<NodeId>> dealt_again_;  // further holders
     std::map<UnitId, Unit> open_;

@@ -42,12 +42,14 @@ struct UnitTrouble {
         return static_cast<std::size_t>(
             std::ranges::count_if(lost_with, [&](NodeId node) { return !survivors.contains(node); }));
     }
-    // The samples are to blame, not the nodes: they failed on two (on one twice if there is no other), or have killed two.
-    // Nodes that vanish for any reason (a lost connection, a preempted machine) are evidence only when there are three.
-    // `other_losses` are nodes that were lost without these samples. Where nodes die anyway, two of them may have had the
-    // same samples by chance: then one or two more are needed.
-    bool is_settled(const std::set<NodeId>& survivors, std::size_t other_losses = 0) const {
-        const std::size_t needed = (has_killed ? 2 : 3) + std::min<std::size_t>(other_losses, 2);
+    // The samples are to blame, not the nodes: they failed on two (on one twice if there is no other), or have killed
+    // `max_crashes`. Nodes that vanish for any reason (a lost connection, a preempted machine) are evidence only when there
+    // is one more. `other_losses` are nodes that were lost without these samples. Where nodes die anyway, two of them may
+    // have had the same samples by chance: then one or two more are needed.
+    bool is_settled(std::size_t max_crashes, const std::set<NodeId>& survivors,
+                    std::size_t other_losses = 0) const {
+        const std::size_t needed =
+            max_crashes + (has_killed ? 0 : 1) + std::min<std::size_t>(other_losses, 2);
         return failures >= 2 || lives(survivors) >= needed;
     }
 };

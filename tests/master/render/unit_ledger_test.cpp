@@ -15,7 +15,7 @@ constexpr Version SceneVersion{1, 1};
 struct UnitLedgerTest : testing::Test {
     const std::vector<Rect> tiles{{0, 0, 8, 8}, {8, 0, 8, 8}};
     const NodeId A{1}, B{2}, C{3};
-    UnitLedger ledger{tiles, UnitId{100}};
+    UnitLedger ledger{tiles, UnitId{100}, 2};
 
     UnitId deal(NodeId node, std::uint32_t tile, const SampleBlock& block, Version version = SceneVersion) {
         const UnitId id = ledger.next_unit();
@@ -119,16 +119,16 @@ TEST_F(UnitLedgerTest, AFailureIsTheNodesFaultIfAnotherSucceeds) {
 TEST(UnitTrouble, BlamesTheSamplesAfterTwoFailuresOrThreeVanishedNodes) {
     UnitTrouble trouble;
     trouble.add(UnitTrouble::Kind::Failed, NodeId{1}, "no");
-    EXPECT_FALSE(trouble.is_settled({}));
+    EXPECT_FALSE(trouble.is_settled(2, {}));
     trouble.add(UnitTrouble::Kind::Failed, NodeId{2}, "boom");
-    EXPECT_TRUE(trouble.is_settled({}));
+    EXPECT_TRUE(trouble.is_settled(2, {}));
     EXPECT_EQ(trouble.message, "boom");
     UnitTrouble lost;
     for (const std::uint64_t node : {1u, 2u}) lost.add(UnitTrouble::Kind::Vanished, NodeId{node}, "gone");
-    EXPECT_FALSE(lost.is_settled({})) << "machines that are preempted";
+    EXPECT_FALSE(lost.is_settled(2, {})) << "machines that are preempted";
     lost.add(UnitTrouble::Kind::Vanished, NodeId{3}, "gone");
-    EXPECT_TRUE(lost.is_settled({}));
-    EXPECT_FALSE(lost.is_settled({NodeId{2}})) << "one of them had lost its connection";
+    EXPECT_TRUE(lost.is_settled(2, {}));
+    EXPECT_FALSE(lost.is_settled(2, {NodeId{2}})) << "one of them had lost its connection";
     EXPECT_FALSE(lost.has_failed_on(NodeId{3}));
 }
 
@@ -200,6 +200,16 @@ TEST_F(UnitLedgerTest, SamplesAreNotToBlameAsSoonWhereNodesDieAnyway) {
     EXPECT_EQ(deaths_until_settled(80, 0), 3u) << "those that are back had only lost their connection";
 }
 
+TEST(UnitTrouble, AllowsThatManyCrashes) {
+    UnitTrouble trouble;
+    for (std::uint64_t node = 1; node < 9; ++node) {
+        EXPECT_FALSE(trouble.is_settled(9, {}));
+        trouble.add(UnitTrouble::Kind::Killed, NodeId{node}, "gone");
+        EXPECT_TRUE(trouble.is_settled(node, {}));
+        EXPECT_FALSE(trouble.is_settled(node + 1, {}));
+    }
+}
+
 TEST_F(UnitLedgerTest, AProcessThatComesBackWasNotKilled) {
     const TimePoint later = TimePoint{} + std::chrono::seconds(1);
     std::shared_ptr<const UnitTrouble> trouble;
@@ -218,7 +228,7 @@ TEST_F(UnitLedgerTest, AProcessThatComesBackWasNotKilled) {
 TEST_F(UnitLedgerTest, EveryHoldingEndsExactlyOnce) {
     CounterRandom random(5);
     for (int round = 0; round < 200; ++round) {
-        UnitLedger units(tiles, UnitId{1});
+        UnitLedger units(tiles, UnitId{1}, 2);
         std::uint64_t dealt = 0;
         std::vector<UnitLedger::Returned> waiting;
         for (const std::uint32_t tile : {0u, 1u}) {
