@@ -6,6 +6,35 @@
 
 namespace tessera::master {
 
+namespace {
+
+// What is wrong with the options; null: nothing.
+const char* problem_of(const MasterOptions& options) {
+    if (options.keys.empty() && !options.insecure) {
+        return "no keys: give --keys DIR (make them with 'tessera keys DIR'), or --insecure on a loopback "
+               "address";
+    }
+    if (!options.keys.empty() && options.insecure) return "--keys and --insecure exclude each other";
+    if (!(options.heartbeat_seconds >= 0.05 && options.heartbeat_seconds <= 60.0)) {
+        return "--heartbeat must be between 0.05 and 60 seconds";
+    }
+    if (!(options.checkpoint_seconds >= 0.1 && options.checkpoint_seconds <= 3600.0)) {
+        return "--checkpoint must be between 0.1 and 3600 seconds";
+    }
+    if (options.io_threads < 1 || options.io_threads > 64) return "--io-threads must be between 1 and 64";
+    if (options.memory_mib != 0 && options.memory_mib < 64) return "--memory must be at least 64 MiB";
+    if (!(options.orphan_seconds >= 0.0 && options.orphan_seconds <= 1e6))
+        return "--orphan must be between 0 and 1000000 seconds";
+    if (!(options.verify_percent >= 0.0 && options.verify_percent <= 100.0))
+        return "--verify must be between 0 and 100 percent";
+    // After a single crash any of the node's samples may have been the cause.
+    if (options.max_crashes < 2 || options.max_crashes > 1000)
+        return "--max-crashes must be between 2 and 1000";
+    return nullptr;
+}
+
+}  // namespace
+
 std::optional<int> parse_options(int argc, const char* const* argv, MasterOptions& options, std::ostream& out,
                                  std::ostream& err) {
     cli::CommandLine line("tessera-master",
@@ -40,8 +69,8 @@ std::optional<int> parse_options(int argc, const char* const* argv, MasterOption
                 options.verify_percent);
     line.option(
         "--max-crashes",
-        "nodes that may crash over the same samples before these are left out, and the frame ends with "
-        "the rest; more where machines may be taken away at any time",
+        "nodes that crash over the same samples before these are left out and the frame ends with the rest; "
+        "raise it where machines may be taken away at any time",
         options.max_crashes);
     cli::add_log_options(line, options.log);
     line.examples({"tessera keys ~/.tessera && tessera-master --keys ~/.tessera",
@@ -49,31 +78,10 @@ std::optional<int> parse_options(int argc, const char* const* argv, MasterOption
                    "tessera-master --keys ~/.tessera --session /var/lib/tessera/room",
                    "tessera-master --insecure          # this machine only"});
     if (const auto exit = line.parse(argc, argv, out, err)) return exit;
-    const auto usage = [&](const char* text) {
-        err << "tessera-master: " << text << "\n";
+    if (const char* problem = problem_of(options)) {
+        err << "tessera-master: " << problem << "\n";
         return cli::ExitUsage;
-    };
-    if (options.keys.empty() && !options.insecure) {
-        return usage(
-            "no keys: give --keys DIR (make them with 'tessera keys DIR'), or --insecure on a loopback "
-            "address");
     }
-    if (!options.keys.empty() && options.insecure) return usage("--keys and --insecure exclude each other");
-    if (!(options.heartbeat_seconds >= 0.05 && options.heartbeat_seconds <= 60.0)) {
-        return usage("--heartbeat must be between 0.05 and 60 seconds");
-    }
-    if (!(options.checkpoint_seconds >= 0.1 && options.checkpoint_seconds <= 3600.0)) {
-        return usage("--checkpoint must be between 0.1 and 3600 seconds");
-    }
-    if (options.io_threads < 1 || options.io_threads > 64)
-        return usage("--io-threads must be between 1 and 64");
-    if (options.memory_mib != 0 && options.memory_mib < 64) return usage("--memory must be at least 64 MiB");
-    if (!(options.orphan_seconds >= 0.0 && options.orphan_seconds <= 1e6))
-        return usage("--orphan must be between 0 and 1000000 seconds");
-    if (!(options.verify_percent >= 0.0 && options.verify_percent <= 100.0))
-        return usage("--verify must be between 0 and 100 percent");
-    if (options.max_crashes < 1 || options.max_crashes > 1000)
-        return usage("--max-crashes must be between 1 and 1000");
     return std::nullopt;
 }
 

@@ -37,7 +37,7 @@ TEST(MasterOptions, AreParsed) {
 
 TEST(MasterOptions, OutOfRangeExit64AndAreNamed) {
     const std::vector<std::vector<const char*>> wrong{
-        {"--max-crashes", "0"}, {"--max-crashes", "1001"}, {"--max-crashes", "-1"}, {"--memory", "63"},
+        {"--max-crashes", "1"}, {"--max-crashes", "1001"}, {"--max-crashes", "-1"}, {"--memory", "63"},
         {"--io-threads", "0"},  {"--io-threads", "65"},    {"--verify", "101"},     {"--verify", "nan"},
         {"--heartbeat", "0"},   {"--heartbeat", "61"},     {"--orphan", "-1"},      {"--checkpoint", "0"}};
     for (auto words : wrong) {

@@ -171,6 +171,24 @@ TEST(Scheduler, DoubtfulSamplesCostNoThirdNodeBeforeADeathIsNoticed) {
     }
 }
 
+TEST(Scheduler, SamplesMayCostAsManyNodesAsThePlanSays) {
+    for (const std::uint32_t max_crashes : {2u, 3u, 7u}) {
+        Scheduler scheduler({.window = {0, 0, 8, 8}, .tile = 8, .spp = 1, .max_crashes = max_crashes},
+                            ViewId{1}, 1, {1, 1}, UnitId{1}, std::nullopt);
+        Balancer balancer;
+        std::uint32_t crashes = 0;
+        while (scheduler.failed_tiles().empty() && crashes < 20) {
+            const NodeId node{++crashes};
+            const auto at = [&](int s) { return TimePoint{std::chrono::seconds(10 * int(crashes) + s)}; };
+            const std::vector<NodeCapacity> idle{{.node = node, .free_slots = 1, .heartbeat_at = at(0)}};
+            ASSERT_EQ(scheduler.assign(idle, balancer, at(0)).size(), 1u) << crashes;
+            scheduler.node_gone(
+                {.node = node, .rendering = 1, .has_ended = true, .now = at(1), .describe = {}});
+        }
+        EXPECT_EQ(crashes, max_crashes);
+    }
+}
+
 TEST(Scheduler, PartlyFinishedUnitReturnsItsMissingSamples) {
     Scheduler scheduler({.window = {0, 0, 8, 8}, .tile = 8, .spp = 16, .first_level = 4}, ViewId{1}, 1,
                         {1, 1}, UnitId{1}, std::nullopt);
