@@ -103,37 +103,45 @@ void merge_channel(FilmTile& into, const FilmTile& later, const ChannelInfo& inf
     }
 }
 
-bool acceptable(const ChannelSet& channels, std::span<const float> values) {
-    std::size_t next = 0;
-    return channels.for_each([&](const ChannelInfo& info) {
-        for (std::uint32_t c = 0; c < info.components; ++c) {
-            const float value = values[next++];
-            if ((info.rule == MergeRule::Moments || info.rule == MergeRule::Sum) && !std::isfinite(value))
-                return false;
-            const bool is_payload = c > 0 || info.rule == MergeRule::First;
-            if (!is_payload && std::isnan(value)) return false;
-        }
-        return true;
-    });
+// What a sample without a value has: the neutral element of the rule.
+float neutral(MergeRule rule, std::uint32_t component) {
+    constexpr float Infinity = std::numeric_limits<float>::infinity();
+    if (component > 0 && rule == MergeRule::Nearest) return 0.0f;
+    if (rule == MergeRule::Minimum || rule == MergeRule::Nearest) return Infinity;
+    return rule == MergeRule::Maximum ? -Infinity : 0.0f;
+}
+
+bool has_value(const ChannelInfo& info, std::span<const float> values) {
+    for (std::uint32_t c = 0; c < info.components; ++c) {
+        const bool is_sum = info.rule == MergeRule::Moments || info.rule == MergeRule::Sum;
+        if (is_sum && !std::isfinite(values[c])) return false;
+        const bool is_payload = c > 0 || info.rule == MergeRule::First;
+        if (!is_payload && std::isnan(values[c])) return false;
+    }
+    return true;
 }
 
 }  // namespace
 
 void put_sample(FilmTile& tile, std::size_t pixel, std::span<const float> values) {
-    if (!acceptable(tile.channels, values)) {
-        ++tile.nonfinite_samples;
-        return;
-    }
-    tile.counts[pixel] = 1;
     std::size_t next = 0;
     std::uint32_t plane = 0;
-    (void)tile.channels.for_each([&](const ChannelInfo& info) {
-        for (std::uint32_t c = 0; c < info.components; ++c) {
-            std::memcpy(&tile.plane(plane + c)[pixel], &values[next++], sizeof(float));
+    const bool is_counted = tile.channels.for_each([&](const ChannelInfo& info) {
+        const bool is_valid = has_value(info, values.subspan(next, info.components));
+        if (info.channel == Channel::Radiance && !is_valid) return false;
+        for (std::uint32_t c = 0; c < info.components; ++c, ++next) {
+            // As bits: ids may look like a NaN.
+            const float other = neutral(info.rule, c);
+            std::memcpy(&tile.plane(plane + c)[pixel], is_valid ? &values[next] : &other, sizeof(float));
         }
         plane += info.plane_count();  // M2 of a single sample stays 0
         return true;
     });
+    if (is_counted) {
+        tile.counts[pixel] = 1;
+    } else {
+        ++tile.nonfinite_samples;
+    }
 }
 
 void merge(FilmTile& into, const FilmTile& later) {

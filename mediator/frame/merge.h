@@ -5,8 +5,9 @@
 namespace tessera::frame {
 
 // Writes one sample (block of level 0) of one pixel: `values` holds the components of every channel of the tile in
-// the order of the enum. Non-finite radiance (Moments and Sum channels) rejects the whole sample: it is counted in
-// nonfinite_samples, never merged; an infinite depth is legal.
+// the order of the enum. Radiance that is not finite rejects the whole sample: it is counted in nonfinite_samples,
+// never merged. In other channels a value that is not finite counts as that of a miss, so that radiance does not
+// depend on which channels are asked for; an infinite depth is legal.
 void put_sample(FilmTile& tile, std::size_t pixel, std::span<const float> values);
 
 // into := merge(into, later). Both cover the same rect and channels; `later` starts where `into` ends or anywhere

@@ -57,6 +57,26 @@ TEST(Merge, ARejectedSampleOnlyIncrementsItsCounter) {
     EXPECT_EQ(infinite.nonfinite_samples, 1u);
 }
 
+// What is asked for in addition changes nothing in the radiance, whatever its values are.
+TEST(Merge, ValuesThatAreNotFiniteAreLeftOutChannelByChannel) {
+    constexpr float NaN = std::numeric_limits<float>::quiet_NaN();
+    const ChannelSet channels{Channel::Radiance, Channel::Albedo, Channel::Normal, Channel::Depth};
+    const auto sample = [&](std::uint64_t index, float albedo, float normal, float depth) {
+        FilmTile tile({0, 0, 1, 1}, {index, 0}, channels);
+        put_sample(tile, 0, std::array{2.0f, 3.0f, 4.0f, 0.5f, albedo, 0.5f, 1.0f, normal, 0.0f, depth});
+        return tile;
+    };
+    FilmTile film = sample(0, NaN, 1.0f, 7.0f);
+    merge(film, sample(1, 0.25f, Infinity, NaN));
+    EXPECT_EQ(film.counts[0], 2u);
+    EXPECT_EQ(film.nonfinite_samples, 0u);
+    EXPECT_EQ(resolve(film, Channel::Radiance).values[1], 3.0f);
+    EXPECT_EQ(resolve(film, Channel::Albedo).values[1], 0.125f) << "one of two samples has none";
+    EXPECT_EQ(resolve(film, Channel::Normal).values[0], 0.5f);
+    EXPECT_EQ(resolve(film, Channel::Depth).values[0], 7.0f);
+    EXPECT_EQ(resolve(sample(0, 1.0f, 1.0f, NaN), Channel::Depth).values[0], Infinity) << "as of a miss";
+}
+
 TEST(Resolve, HandlesNoneAndOneSample) {
     FilmTile empty({0, 0, 1, 1}, {0, 0}, {Channel::Radiance, Channel::Depth});
     EXPECT_EQ(resolve(empty, Channel::Radiance).values[0], 0.0f);
