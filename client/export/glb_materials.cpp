@@ -18,6 +18,10 @@ namespace {
 using Object = tinygltf::Value::Object;
 using tinygltf::Value;
 
+bool is_within_one(std::span<const float> values) {
+    return std::all_of(values.begin(), values.end(), [](float v) { return v >= 0.0f && v <= 1.0f; });
+}
+
 Value pair_of(const glm::vec2& value) {
     return Value(Value::Array{Value(double{value.x}), Value(double{value.y})});
 }
@@ -189,10 +193,11 @@ std::optional<int> GlbMaterials::texture(ObjectId id) {
     const auto [entry, is_new] = textures_.try_emplace(id);
     const auto* texture = scene_.find_as<scene::Texture>(id);
     if (!is_new || texture == nullptr) return entry->second;
-    if (texture->format == scene::TexelFormat::RgbFloat) {
+    const bool is_float = texture->format == scene::TexelFormat::RgbFloat;
+    if (is_float && !is_within_one(buffer_.blob(texture->texels)->as<float>())) {
         notices_.insert(
             "texture '" + texture->name +
-            "' is left out: glTF has no floating-point textures; save the scene as .tessera to keep it");
+            "' is left out: glTF has no textures with values above 1; save the scene as .tessera to keep it");
         return std::nullopt;
     }
     tinygltf::Texture result;
@@ -211,8 +216,12 @@ int GlbMaterials::image(const scene::Texture& texture) {
     tinygltf::Image image;
     image.name = utf8(texture.name);
     image.mimeType = "image/png";
-    image.bufferView = buffer_.view(picture::encode_rgba_png(
-        texture.width, texture.height * texture.depth, buffer_.blob(texture.texels)->as<std::uint8_t>()));
+    const scene::BlobPtr texels = buffer_.blob(texture.texels);
+    const std::uint32_t height = texture.height * texture.depth;
+    image.bufferView =
+        buffer_.view(texture.format == scene::TexelFormat::RgbFloat
+                         ? picture::encode_deep_png(texture.width, height, texels->as<float>())
+                         : picture::encode_rgba_png(texture.width, height, texels->as<std::uint8_t>()));
     model_.images.push_back(std::move(image));
     return entry->second = static_cast<int>(model_.images.size()) - 1;
 }

@@ -5,6 +5,7 @@
 #include "client/import/gltf_accessor.h"
 #include "client/import/gltf_extras.h"
 #include "client/import/image_decoder.h"
+#include "client/import/limits.h"
 
 namespace tessera::import {
 namespace {
@@ -34,7 +35,8 @@ std::string image_name(const tinygltf::Image& image, int index) {
 
 }  // namespace
 
-Expected<GltfTextures::Texels> GltfTextures::decode(int index) {
+// Colours have eight bits in sRGB, whose steps are not seen. Steps of normals are, in mirrors.
+Expected<GltfTextures::Texels> GltfTextures::decode(int index, TextureUse use) {
     const tinygltf::Image* image = find(model_.images, index);
     if (!image) return failure(ErrorCode::InvalidInput, "the file has no image " + std::to_string(index));
     try {
@@ -44,18 +46,26 @@ Expected<GltfTextures::Texels> GltfTextures::decode(int index) {
         if (bytes.empty() && !image->uri.empty())
             return failure(ErrorCode::InvalidInput,
                            "its file cannot be read: put it into the scene's folder");
+        if (use == TextureUse::Data) {
+            const auto deep = picture::read_deep_png(std::as_bytes(bytes), ImageLimits);
+            if (!deep) return tl::unexpected<Error>(deep.error());
+            if (*deep)
+                return Texels{(*deep)->width, (*deep)->height, builder_.blob((*deep)->values),
+                              scene::TexelFormat::RgbFloat};
+        }
         const Expected<DecodedImage> pixels = decode_image(bytes);
         if (!pixels) return tl::unexpected<Error>(pixels.error());
-        return Texels{pixels->width, pixels->height, builder_.blob(pixels->rgba)};
+        return Texels{pixels->width, pixels->height, builder_.blob(pixels->rgba), scene::TexelFormat::Rgba8};
     } catch (const Error& error) {
         if (error.code() == ErrorCode::OutOfMemory) throw;
         return tl::unexpected<Error>(error);
     }
 }
 
-const Expected<GltfTextures::Texels>& GltfTextures::decoded(int index) {
-    const auto found = images_.find(index);
-    return found != images_.end() ? found->second : images_.emplace(index, decode(index)).first->second;
+const Expected<GltfTextures::Texels>& GltfTextures::decoded(int index, TextureUse use) {
+    const std::pair key(index, use);
+    const auto found = images_.find(key);
+    return found != images_.end() ? found->second : images_.emplace(key, decode(index, use)).first->second;
 }
 
 ObjectId GltfTextures::texture(int index, TextureUse use, const std::string& material) {
@@ -72,7 +82,7 @@ ObjectId GltfTextures::texture(int index, TextureUse use, const std::string& mat
                                           " textures: correct its index");
     }
     if (source->source == -1) return reject_texture(number, "it names no image: export it as PNG or JPEG");
-    const Expected<Texels>& texels = decoded(source->source);
+    const Expected<Texels>& texels = decoded(source->source, use);
     if (!texels) {
         const tinygltf::Image* image = find(model_.images, source->source);
         return reject_texture(image ? "'" + image_name(*image, source->source) + "'" : number,
@@ -81,7 +91,7 @@ ObjectId GltfTextures::texture(int index, TextureUse use, const std::string& mat
     scene::Texture texture;
     texture.width = texels->width;
     texture.height = texels->height;
-    texture.format = use == TextureUse::Color ? scene::TexelFormat::Rgba8Srgb : scene::TexelFormat::Rgba8;
+    texture.format = use == TextureUse::Color ? scene::TexelFormat::Rgba8Srgb : texels->format;
     texture.texels = texels->blob;
     if (const tinygltf::Sampler* sampler = find(model_.samplers, source->sampler)) {
         texture.wrap_s = wrap(sampler->wrapS);

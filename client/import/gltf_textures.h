@@ -23,13 +23,14 @@ class GltfTextures {
     struct Texels {
         std::uint32_t width = 0, height = 0;
         scene::BlobRef blob;
+        scene::TexelFormat format = scene::TexelFormat::Rgba8;  // RgbFloat: a 16-bit image for data
     };
-    const Expected<Texels>& decoded(int image);
-    Expected<Texels> decode(int image);
+    const Expected<Texels>& decoded(int image, TextureUse use);
+    Expected<Texels> decode(int image, TextureUse use);
 
     const tinygltf::Model& model_;
     SceneBuilder& builder_;
-    std::map<int, Expected<Texels>> images_;
+    std::map<std::pair<int, TextureUse>, Expected<Texels>> images_;
     std::map<
         std::tuple<int, std::uint32_t, scene::TexelFormat, scene::Wrap, scene::Wrap, scene::TextureFilter>,
         ObjectId>

@@ -79,6 +79,10 @@ class PngReader {
     std::uint32_t height() const { return png_get_image_height(png_, info_); }
     std::uint32_t components() const { return png_get_channels(png_, info_); }
     bool is_deep() const { return png_get_bit_depth(png_, info_) == 16; }
+    bool has_alpha() const {
+        return (png_get_color_type(png_, info_) & PNG_COLOR_MASK_ALPHA) != 0 ||
+               png_get_valid(png_, info_, PNG_INFO_tRNS) != 0;
+    }
     std::size_t row_bytes() const { return png_get_rowbytes(png_, info_); }
     std::string message() const { return failure_.message; }
 
@@ -120,6 +124,22 @@ Expected<std::vector<std::uint8_t>> pixels(PngReader& reader, PngReader::Format 
     return values;
 }
 
+// Without alpha: to [0, 1].
+Expected<frame::Image> floats(PngReader& reader) {
+    const auto values = pixels(reader, PngReader::Format::WithoutAlpha);
+    if (!values) return tl::unexpected<Error>(values.error());
+    frame::Image image(reader.width(), reader.height(), reader.components());
+    const std::size_t per_row = std::size_t{image.width} * image.components;
+    for (std::uint32_t y = 0; y < image.height; ++y)
+        for (std::size_t i = 0; i < per_row; ++i) {
+            const std::uint8_t* row = values->data() + y * reader.row_bytes();
+            image.values[y * per_row + i] =
+                reader.is_deep() ? static_cast<float>((row[2 * i] << 8) + row[2 * i + 1]) / 65535.0f
+                                 : static_cast<float>(row[i]) / 255.0f;
+        }
+    return image;
+}
+
 }  // namespace
 
 bool is_png(std::span<const std::byte> bytes) {
@@ -144,18 +164,23 @@ Expected<frame::Image> read_png(std::span<const std::byte> bytes) {
     constexpr PictureLimits Limits{.side = MaxSide, .pixels = std::int64_t{MaxSide} * MaxSide};
     if (const auto started = start(reader, bytes.size(), Limits); !started)
         return tl::unexpected<Error>(started.error());
-    const auto values = pixels(reader, PngReader::Format::WithoutAlpha);
-    if (!values) return tl::unexpected<Error>(values.error());
-    frame::Image image(reader.width(), reader.height(), reader.components());
-    const std::size_t per_row = std::size_t{image.width} * image.components;
-    for (std::uint32_t y = 0; y < image.height; ++y)
-        for (std::size_t i = 0; i < per_row; ++i) {
-            const std::uint8_t* row = values->data() + y * reader.row_bytes();
-            image.values[y * per_row + i] =
-                reader.is_deep() ? static_cast<float>((row[2 * i] << 8) + row[2 * i + 1]) / 65535.0f
-                                 : static_cast<float>(row[i]) / 255.0f;
-        }
-    return image;
+    return floats(reader);
+}
+
+Expected<std::optional<frame::Image>> read_deep_png(std::span<const std::byte> bytes,
+                                                    const PictureLimits& limits) {
+    if (!is_png(bytes)) return std::nullopt;
+    Source source{bytes};
+    PngReader reader(source);
+    if (const auto started = start(reader, bytes.size(), limits); !started)
+        return tl::unexpected<Error>(started.error());
+    if (!reader.is_deep() || reader.has_alpha()) return std::nullopt;
+    Expected<frame::Image> image = floats(reader);
+    if (!image) return tl::unexpected<Error>(image.error());
+    if (image->components == 3) return std::move(*image);
+    frame::Image gray(image->width, image->height, 3);
+    for (std::size_t i = 0; i < gray.values.size(); ++i) gray.values[i] = image->values[i / 3];
+    return gray;
 }
 
 }  // namespace tessera::picture

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,10 @@ struct RgbaImage {
 
 // Decodes any PNG to eight bits, the upper ones of 16; no gamma. Decompresses no more than its header claims.
 Expected<RgbaImage> read_png_rgba(std::span<const std::byte> bytes, const PictureLimits& limits);
+
+// Decodes a PNG of 16 bits without alpha to three components in [0, 1], no gamma; none for any other.
+Expected<std::optional<frame::Image>> read_deep_png(std::span<const std::byte> bytes,
+                                                    const PictureLimits& limits);
 
 bool is_png(std::span<const std::byte> bytes);  // whether these are the first bytes of one
 

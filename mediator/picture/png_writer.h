@@ -20,4 +20,7 @@ std::vector<std::byte> encode_png(std::uint32_t width, std::uint32_t height,
 std::vector<std::byte> encode_rgba_png(std::uint32_t width, std::uint32_t height,
                                        std::span<const std::uint8_t> rgba);
 
+// 16 bits, 3 values a pixel in [0, 1]; others are clamped.
+std::vector<std::byte> encode_deep_png(std::uint32_t width, std::uint32_t height, std::span<const float> rgb);
+
 }  // namespace tessera::picture

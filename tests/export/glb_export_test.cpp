@@ -201,6 +201,40 @@ TEST(GlbExport, AFloatTextureInAMaterialIsLeftOutAndReported) {
     EXPECT_FALSE(import::named<scene::Material>(imported, material.name).emission_texture.texture);
 }
 
+// Data of 16 bits (imported as floats) is written as such.
+TEST(GlbExport, AFloatTextureWithinOneIsWrittenWithSixteenBits) {
+    RichScene rich;
+    make_rich(rich);
+    const std::vector<float> values{0.25f, 0.5f, 1.0f};
+    const scene::BlobPtr texels = rich.blobs.insert(std::as_bytes(std::span(values)));
+    const scene::Texture precise{.name = "precise",
+                                 .width = 1,
+                                 .height = 1,
+                                 .format = scene::TexelFormat::RgbFloat,
+                                 .texels = scene::reference(*texels)};
+    const ObjectId id{1000};
+    ASSERT_TRUE(rich.scene.apply_entries({scene::Create{id, precise}}));
+    std::string changed;
+    for (const auto& [other, object] : rich.scene.objects()) {
+        const auto* found = std::get_if<scene::Material>(object.get());
+        if (found == nullptr || !changed.empty()) continue;
+        scene::Material material = *found;
+        changed = material.name;
+        material.normal_texture = {.texture = id};
+        ASSERT_TRUE(rich.scene.apply_entries({scene::Update{
+            other, scene::Fields<scene::Material>(&scene::Material::normal_texture).bits(), material}}));
+    }
+    Notices notices;
+    const import::ImportedScene imported = through_glb(rich.scene, rich.blobs, notices);
+    const auto& again = import::named<scene::Texture>(imported, "precise");
+    EXPECT_EQ(again.format, scene::TexelFormat::RgbFloat);
+    const auto found = import::values<float>(imported, again.texels);
+    ASSERT_EQ(found.size(), 3u);
+    EXPECT_NEAR(found[0], 0.25f, 1.0f / 65535.0f);
+    EXPECT_NEAR(found[1], 0.5f, 1.0f / 65535.0f);
+    EXPECT_EQ(found[2], 1.0f);
+}
+
 TEST(GlbExport, NamesWithInvalidUtf8AreRepaired) {
     RichScene rich;
     make_rich(rich);

@@ -1,3 +1,4 @@
+#include "mediator/picture/png_writer.h"
 #include "tests/import/inspect.h"
 #include "tests/import/scene_file.h"
 
@@ -194,6 +195,36 @@ TEST(GltfTexture, UsedAsColorAndDataIsTwoObjectsOverOneBlob) {
     EXPECT_EQ(color.format, scene::TexelFormat::Rgba8Srgb);
     EXPECT_EQ(data.format, scene::TexelFormat::Rgba8);
     EXPECT_EQ(color.texels, data.texels);
+}
+
+// Steps of 1/255 in normals are seen in mirrors; colours are kept in eight bits.
+TEST(GltfTexture, SixteenBitsOfDataAreKept) {
+    const std::vector<float> exact{0.5f, 12345.0f / 65535.0f, 1.0f};
+    const std::vector<std::byte> bytes = picture::encode_deep_png(1, 1, exact);
+    SceneFile file;
+    file.image({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    const ImportedScene scene = with_materials(file, {R"({"name":"both","pbrMetallicRoughness":{
+        "baseColorTexture":{"index":0}},"normalTexture":{"index":0}})"});
+    const Material& both = named<Material>(scene, "both");
+    const Texture& color = object<Texture>(scene, both.base_color_texture.texture);
+    const Texture& data = object<Texture>(scene, both.normal_texture.texture);
+    EXPECT_EQ(color.format, scene::TexelFormat::Rgba8Srgb);
+    EXPECT_EQ(data.format, scene::TexelFormat::RgbFloat);
+    const auto found = values<float>(scene, data.texels);
+    ASSERT_EQ(found.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(found[i], exact[i], 0.5f / 65535.0f + 1e-7f) << i;
+}
+
+TEST(GltfTexture, ATruncatedImageOfSixteenBitsIsReported) {
+    const std::vector<std::byte> bytes =
+        picture::encode_deep_png(64, 64, std::vector<float>(64 * 64 * 3, 0.3f));
+    for (const std::size_t size : {bytes.size() / 2, std::size_t{40}, std::size_t{9}}) {
+        SceneFile file;
+        file.image({reinterpret_cast<const char*>(bytes.data()), size});
+        const ImportedScene scene = with_materials(file, {R"({"name":"it","normalTexture":{"index":0}})"});
+        EXPECT_FALSE(named<Material>(scene, "it").normal_texture.texture) << size;
+        EXPECT_TRUE(has_notice(scene, "only the factor is used")) << size;
+    }
 }
 
 TEST(GltfTexture, SamplersAndSharingAreKept) {
