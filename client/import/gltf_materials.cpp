@@ -89,6 +89,22 @@ GltfMaterial GltfMaterials::make_shader(const tinygltf::Value& fields, const std
     return result;
 }
 
+ObjectId GltfMaterials::thin_walled(ObjectId id) {
+    const auto [entry, is_new] = thin_walled_.try_emplace(id);
+    if (!is_new) return entry->second;
+    scene::Material material = builder_.get<scene::Material>(id);
+    if (material.attenuation_distance > 0.0f) {
+        const float lengths = material.thickness / material.attenuation_distance;
+        for (int i = 0; i < 3; ++i)
+            material.base_color[i] *= std::pow(material.attenuation_color[i], lengths);
+    }
+    material.name += " (thin-walled)";
+    material.thickness = 0.0f;
+    material.attenuation_distance = scene::Material{}.attenuation_distance;
+    material.attenuation_color = scene::Material{}.attenuation_color;
+    return entry->second = builder_.add(std::move(material));
+}
+
 ObjectId GltfMaterials::medium(const tinygltf::Value& primitive_extras) {
     if (!primitive_extras.IsObject() || !primitive_extras.Has(MediumExtras)) return {};
     const int index = index_member(primitive_extras, MediumExtras);
@@ -168,7 +184,10 @@ GltfMaterial GltfMaterials::make(const tinygltf::Material& source, const std::st
     result.tangent_set =
         material.normal_texture.texture ? material.normal_texture.set : material.clearcoat_normal_texture.set;
     result.needs_tex_coords_1 = uses_tex_coords_1(material);
+    const bool has_volume = material.transmission > 0.0f && material.thickness > 0.0f &&
+                            gltf_extension(source.extensions, "KHR_materials_volume") != nullptr;
     result.id = builder_.add(std::move(material));
+    if (has_volume) volumes_.insert(result.id);
     return result;
 }
 

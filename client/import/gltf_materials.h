@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 
 #include "client/import/gltf_textures.h"
 
@@ -27,6 +28,10 @@ class GltfMaterials {
     // An index out of range gives the default material and a notice.
     GltfMaterial material(int index);
 
+    bool has_volume(ObjectId material) const { return volumes_.contains(material); }  // KHR_materials_volume
+    // The same material without its volume, as a thin wall that absorbs what its thickness would.
+    ObjectId thin_walled(ObjectId material);
+
     // The interior medium of the primitive; 0 = none.
     ObjectId medium(const tinygltf::Value& primitive_extras);
 
@@ -39,6 +44,8 @@ class GltfMaterials {
     GltfTextures textures_;
     std::map<int, GltfMaterial> materials_;
     std::map<int, ObjectId> media_;
+    std::set<ObjectId> volumes_;
+    std::map<ObjectId, ObjectId> thin_walled_;
 };
 
 }  // namespace tessera::import

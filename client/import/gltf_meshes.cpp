@@ -6,10 +6,12 @@
 #include <glm/common.hpp>
 #include <numeric>
 
+#include "client/import/closed_mesh.h"
 #include "client/import/gltf_draco.h"
 #include "client/import/gltf_text.h"
 #include "client/import/limits.h"
 #include "client/import/line_tubes.h"
+#include "client/import/tangents.h"
 
 namespace tessera::import {
 namespace {
@@ -94,7 +96,29 @@ std::vector<ObjectId> GltfMeshes::make_all(int index, const MeshPose* pose,
                         "): a magenta box replaces it; export the mesh again");
         geometries.push_back(builder_.placeholder_geometry());
     }
+    check_volumes(geometries, name);
     return geometries;
+}
+
+// Light that enters an open mesh would never leave its medium.
+void GltfMeshes::check_volumes(const std::vector<ObjectId>& geometries, const std::string& mesh_name) {
+    constexpr double MostOpen =
+        1e-3;  // holes with less than this fraction of the surface are modelling errors
+    std::vector<MeshPart> parts;
+    for (const ObjectId id : geometries) {
+        const auto& geometry = builder_.get<scene::Geometry>(id);
+        parts.push_back({builder_.stored(geometry.positions).as<glm::vec3>(),
+                         builder_.stored(geometry.indices).as<std::uint32_t>()});
+    }
+    for (std::size_t i = 0; i < geometries.size(); ++i) {
+        const ObjectId material = builder_.get<scene::Geometry>(geometries[i]).material;
+        if (!materials_.has_volume(material) || open_fraction(parts, i) <= MostOpen) continue;
+        const ObjectId thin = materials_.thin_walled(material);
+        builder_.get<scene::Geometry>(geometries[i]).material = thin;
+        builder_.notice("mesh '" + mesh_name +
+                        "' is open, but its material has KHR_materials_volume, which is "
+                        "for closed meshes: it is rendered thin-walled; close the mesh to make it solid");
+    }
 }
 
 GltfMeshes::Source GltfMeshes::read(const tinygltf::Primitive& primitive, const std::string& mesh_name) {

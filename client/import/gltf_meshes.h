@@ -49,6 +49,8 @@ class GltfMeshes {
     ObjectId make(const tinygltf::Primitive& primitive, const std::string& mesh_name, const std::string& name,
                   const MeshPose* pose, std::vector<DeformedGeometry>* deformed);
 
+    void check_volumes(const std::vector<ObjectId>& geometries, const std::string& mesh_name);
+
     const tinygltf::Model& model_;
     SceneBuilder& builder_;
     GltfAccessors accessors_;

@@ -47,9 +47,4 @@ Bounds bounds_of(const MeshData& mesh);
 // normal.
 void make_flat(MeshData& mesh);
 
-// Computes tangents along u from one set of texture coordinates and normals, both present. Vertices shared by
-// triangles of different handedness (mirrored texture) are split. Degenerate texture coordinates give an
-// arbitrary tangent.
-void generate_tangents(MeshData& mesh, std::uint32_t set = 0);
-
 }  // namespace tessera::import

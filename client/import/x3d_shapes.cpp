@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "client/import/tangents.h"
 #include "client/import/x3d_face_set.h"
 #include "client/import/x3d_fields.h"
 #include "client/import/x3d_primitives.h"
