@@ -46,6 +46,7 @@ for bench in kernel update texture; do
 done
 run light.txt "$bin/tessera_light_bench" trees
 run fog.txt "$bin/tessera_light_bench" fog
+run skies.txt "$bin/tessera_light_bench" skies
 run filters.json "$bin/tessera" bench filters -o "$out/filters" --scenes room-1,studio-1,still --spp 4 --large none \
     --reference-spp 512 --json
 run backends.txt "$bin/tessera" bench backends --scenes room-1,studio-1,balls:1000000 --spp 4 --repeat 3

@@ -17,7 +17,7 @@ void alpha_filter(const RTCFilterFunctionNArguments* arguments) {
             context->meets_walls = true;
             arguments->valid[i] = 0;
         } else if (shading::skips(context->skip, instance, distance) ||
-                   !shading::stops_at(*context->scene, instance, triangle, barycentric, context->seed)) {
+                   !shading::stops_at(*context->scene, instance, triangle, barycentric, context->numbers)) {
             arguments->valid[i] = 0;
         }
     }

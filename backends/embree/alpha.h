@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "mediator/shading/rays.h"
+#include "mediator/shading/sobol.h"
 
 namespace tessera::embree {
 
@@ -12,7 +13,7 @@ namespace tessera::embree {
 struct TraceContext {
     RTCIntersectContext embree;  // first, so that Embree's pointer can be cast
     const shading::Scene* scene = nullptr;
-    std::uint32_t seed = 0;  // of (pixel, sample, bounce, kind of ray)
+    shading::Sampler numbers{};  // of (pixel, bounce, kind of ray), and the sample
     shading::Skip skip = shading::skip_nothing();
     bool connects = false;             // a ray to a light
     mutable bool meets_walls = false;  // it has met thin walls (is_thin_wall)

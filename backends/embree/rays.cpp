@@ -8,19 +8,19 @@ namespace tessera::embree {
 
 namespace {
 
-TraceContext start(const Rays& rays, std::uint32_t seed) {
+TraceContext start(const Rays& rays, const shading::Sampler& numbers) {
     TraceContext started;
     rtcInitIntersectContext(&started.embree);
     started.scene = &rays.scene;
-    started.seed = seed;
+    started.numbers = numbers;
     return started;
 }
 
 }  // namespace
 
-bool trace_closest(const Rays& rays, const shading::Ray& ray, std::uint32_t seed, const shading::Skip& skip,
-                   shading::Hit& hit) {
-    TraceContext started = start(rays, seed);
+bool trace_closest(const Rays& rays, const shading::Ray& ray, const shading::Sampler& numbers,
+                   const shading::Skip& skip, shading::Hit& hit) {
+    TraceContext started = start(rays, numbers);
     started.skip = skip;
     RTCRayHit query;
     query.ray = {ray.origin.x,
@@ -44,8 +44,8 @@ bool trace_closest(const Rays& rays, const shading::Ray& ray, std::uint32_t seed
 }
 
 bool trace_occluded(const Rays& rays, const glm::vec3& origin, const glm::vec3& segment, float far,
-                    std::uint32_t seed, bool& meets_walls) {
-    TraceContext started = start(rays, seed);
+                    const shading::Sampler& numbers, bool& meets_walls) {
+    TraceContext started = start(rays, numbers);
     started.connects = true;
     RTCRay ray{origin.x,  origin.y,  origin.z, shading::NearestHit, segment.x, segment.y,
                segment.z, rays.time, far,      rays.view.layers,    0,         0};

@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include "mediator/shading/rays.h"
+#include "mediator/shading/sobol.h"
 
 // The rays of the shared transport (mediator/shading/transport.h).
 namespace tessera::embree {
@@ -15,9 +16,9 @@ struct Rays {
     float time = 0.0f;
 };
 
-bool trace_closest(const Rays& rays, const shading::Ray& ray, std::uint32_t seed, const shading::Skip& skip,
-                   shading::Hit& hit);
+bool trace_closest(const Rays& rays, const shading::Ray& ray, const shading::Sampler& numbers,
+                   const shading::Skip& skip, shading::Hit& hit);
 bool trace_occluded(const Rays& rays, const glm::vec3& origin, const glm::vec3& segment, float far,
-                    std::uint32_t seed, bool& meets_walls);
+                    const shading::Sampler& numbers, bool& meets_walls);
 
 }  // namespace tessera::embree

@@ -21,35 +21,35 @@ struct HostContext : backend::PathLogger {
     bool* meets_walls = nullptr;  // not null: a ray to a light
 };
 
-bool stops_ray(const HostContext& context, const shading::Hit& candidate, std::uint32_t seed) {
+bool stops_ray(const HostContext& context, const shading::Hit& candidate, const shading::Sampler& numbers) {
     if (context.meets_walls != nullptr && shading::is_thin_wall(context.scene, candidate.instance)) {
         *context.meets_walls = true;
         return false;
     }
     if (shading::skips(context.skip, candidate.instance, candidate.distance)) return false;
     return shading::stops_at(context.scene, candidate.instance, candidate.triangle, candidate.barycentric,
-                             seed);
+                             numbers);
 }
 
-bool trace_closest(const HostContext& context, const shading::Ray& ray, std::uint32_t seed,
+bool trace_closest(const HostContext& context, const shading::Ray& ray, const shading::Sampler& numbers,
                    const shading::Skip& skip, shading::Hit& hit) {
     HostContext asked = context;
     asked.skip = skip;
     hit =
         shading::bvh_trace(context.pool, context.top, ray.origin, ray.direction, skip.near,
                            shading::infinity(), shading::BvhClosest | shading::BvhAlpha | shading::BvhMotion,
-                           context.view.layers, context.time, asked, seed);
+                           context.view.layers, context.time, asked, numbers);
     return hit.instance != shading::NoInstance;
 }
 
 bool trace_occluded(const HostContext& context, const glm::vec3& origin, const glm::vec3& segment, float far,
-                    std::uint32_t seed, bool& meets_walls) {
+                    const shading::Sampler& numbers, bool& meets_walls) {
     meets_walls = false;
     HostContext asked = context;
     asked.meets_walls = &meets_walls;
     return shading::bvh_trace(context.pool, context.top, origin, segment, shading::NearestHit, far,
                               shading::BvhAny | shading::BvhAlpha | shading::BvhMotion, context.view.layers,
-                              context.time, asked, seed)
+                              context.time, asked, numbers)
                .instance != shading::NoInstance;
 }
 

@@ -3,6 +3,7 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "client/import/gltf_document.h"
 #include "client/import/gltf_extras.h"
@@ -235,6 +236,19 @@ std::vector<glm::dmat4> GltfNodes::instance_matrices(const tinygltf::Node& node)
     return matrices;
 }
 
+void GltfNodes::adapt(scene::Light& light, const tinygltf::Light& source) {
+    if (builder_.options().light_units == LightUnits::Blender) {
+        light.intensity /= LumensPerWatt;
+        if (!has_divided_lights_)
+            builder_.notice("the intensities of its lights are divided by 683 lm/W: units of Blender");
+        has_divided_lights_ = true;
+    }
+    if (std::isfinite(source.range) && source.range > 0.0) {
+        builder_.notice("light '" + light.name +
+                        "': its range is not used, light falls off with the square of the distance");
+    }
+}
+
 void GltfNodes::add_light(const tinygltf::Node& node, const std::string& name,
                           std::vector<ObjectId>& children) {
     const auto extension = node.extensions.find(LightsExtension);
@@ -252,6 +266,7 @@ void GltfNodes::add_light(const tinygltf::Node& node, const std::string& name,
             return;
         }
         if (light->name.empty()) light->name = name;
+        adapt(*light, model_.lights[static_cast<std::size_t>(index)]);
         if (const auto* own =
                 object_extras(model_.lights[static_cast<std::size_t>(index)].extras, LightExtras))
             read_extras(*own, *light, "light '" + light->name + "'", builder_);

@@ -8,7 +8,8 @@
 
 namespace tinygltf {
 class Node;
-}
+struct Light;
+}  // namespace tinygltf
 
 namespace tessera::import {
 
@@ -35,6 +36,8 @@ class GltfNodes {
     ObjectId add_skinned_transform(int node, const std::string& name, const GltfMotion& motion);
     void add_mesh(const tinygltf::Node& node, const std::string& name,
                   const std::vector<ObjectId>& geometries, std::vector<ObjectId>& children);
+    // To the units of the options; reports what of it is not used.
+    void adapt(scene::Light& light, const tinygltf::Light& source);
     void add_light(const tinygltf::Node& node, const std::string& name, std::vector<ObjectId>& children);
     void add_camera(const tinygltf::Node& node, const std::string& name, std::vector<ObjectId>& children);
     void count_instances(std::uint64_t more);
@@ -45,6 +48,7 @@ class GltfNodes {
     GltfAccessors accessors_;
     GltfMeshes meshes_;
     std::map<int, ObjectId> lights_;
+    bool has_divided_lights_ = false;
     std::uint64_t instances_ = 0;
 };
 

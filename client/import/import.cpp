@@ -44,6 +44,8 @@ void check_options(const ImportOptions& options) {
                         "background and environment strength must be finite and not negative");
         }
     }
+    if (!std::isfinite(options.environment_rotation))
+        throw Error(ErrorCode::InvalidInput, "the rotation of the environment must be finite");
 }
 
 void check_animations(SceneBuilder& builder) {

@@ -29,18 +29,25 @@ enum class Motion { Still, Sequence };
 // solid, refracting glass, as most programs that write such files do.
 enum class Glass { Thin, Solid };
 
+// What one unit of radiance is where a file has lights in candela and lux (KHR_lights_punctual). Physical: one candela per
+// square metre, as of emissive surfaces. Blender: one watt; its exporter writes 683 lumens for each watt of a lamp or sun.
+enum class LightUnits { Physical, Blender };
+inline constexpr float LumensPerWatt = 683.0f;
+
 struct ImportOptions {
     ObjectId first_id{2};                 // ids of objects are consecutive from here
     ObjectId end_id{1ull << 32};          // one past the last id that may be used
     std::optional<glm::vec3> background;  // linear radiance; counts as light when not black
     std::filesystem::path environment;    // latitude-longitude .exr or .hdr; empty = none
     float environment_strength = 1.0f;
+    float environment_rotation = 0.0f;  // radians, as Background::rotation
     Missing missing = Missing::Add;
     std::optional<double> at;  // seconds into the animations; none = the rest pose
     double shutter = 0.0;      // seconds from `at`; animated objects get motion keys over it
     std::string animation;     // play only this one, by name, else by index; "" = all
     Motion motion = Motion::Still;
     Glass glass = Glass::Thin;
+    LightUnits light_units = LightUnits::Physical;
     // Width / height of the picture for which a missing camera is framed; wider pictures show everything,
     // too.
     double aspect_ratio = 1.0;

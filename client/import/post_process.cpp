@@ -65,6 +65,7 @@ void post_process(SceneBuilder& builder, scene::Background of_file) {
     if (!options.environment.empty()) {
         background.environment = add_environment(options.environment, builder);
         background.strength = options.environment_strength;
+        background.rotation = options.environment_rotation;
     }
     const bool has_light = result.counts.lights > 0 || background.color != glm::vec3(0.0f) ||
                            background.environment || options.background;

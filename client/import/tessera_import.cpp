@@ -149,6 +149,8 @@ void apply_options(SceneBuilder& builder) {
     auto& background = builder.get<scene::Background>(root.background);
     background.environment = environment;
     background.strength = options.environment_strength;
+    background.rotation = options.environment_rotation;
+    background.map_center = scene::MapCenter::PositiveX;
     auto& blobs = builder.result().blobs;  // the file may already contain the same map
     const Hash256 last = blobs.back()->hash();
     if (std::any_of(blobs.begin(), blobs.end() - 1, [&](const auto& one) { return one->hash() == last; }))

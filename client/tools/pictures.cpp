@@ -99,6 +99,7 @@ std::map<std::string, std::string> provenance(const session::ViewRequest& reques
                        {"tessera.nodes", std::to_string(result.summary.nodes.size())},
                        {"tessera.seed", std::to_string(request.view.seed)},
                        {"tessera.maxBounces", std::to_string(request.view.max_bounces)},
+                       {"tessera.maxSpecularBounces", std::to_string(request.view.max_specular_bounces)},
                        {"tessera.layers", std::to_string(request.view.layers)},
                        {"tessera.pixelFilter", name(request.view.pixel_filter.kind)},
                        {"tessera.samples", std::to_string(result.summary.samples)},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "client/tools/view_attributes.h"
 #include "mediator/base/nearest.h"
@@ -39,6 +40,29 @@ Expected<void> set_optics(const ViewOptions& options, ViewPlan& plan) {
 }
 
 constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 28;  // limit of a master per view
+
+// What the importer is to make of the file.
+Expected<void> set_import(const ViewOptions& options, import::ImportOptions& import) {
+    if (options.at && !(std::abs(*options.at) <= 1e9))
+        return failure(ErrorCode::InvalidInput, "--at: must be a number of seconds up to 1e9");
+    import.at = options.at;
+    if (options.shutter && !(*options.shutter >= 0.0 && *options.shutter <= 1e9))
+        return failure(ErrorCode::InvalidInput, "--shutter: must be 0 to 1e9 seconds");
+    import.shutter = options.shutter.value_or(0.0);
+    import.animation = options.animation.value_or("");
+    if (options.environment) import.environment = *options.environment;
+    if (!std::isfinite(options.environment_strength) || options.environment_strength < 0.0) {
+        return failure(ErrorCode::InvalidInput, "--env-strength: must be a finite number from 0");
+    }
+    import.environment_strength = static_cast<float>(options.environment_strength);
+    if (!std::isfinite(options.environment_rotation))
+        return failure(ErrorCode::InvalidInput, "--env-rotation: must be a finite number of degrees");
+    import.environment_rotation =
+        static_cast<float>(std::remainder(options.environment_rotation, 360.0) * (std::numbers::pi / 180.0));
+    if (options.solid_glass) import.glass = import::Glass::Solid;
+    if (options.light_units == "blender") import.light_units = import::LightUnits::Blender;
+    return {};
+}
 
 }  // namespace
 
@@ -78,13 +102,29 @@ void ViewOptions::add_to(cli::CommandLine& command) {
                    background);
     command.option("--env", "environment map, latitude-longitude .exr or .hdr", environment);
     command.option("--env-strength", "scale factor of the environment map", environment_strength);
+    command.option("--env-rotation",
+                   "degrees by which the environment map is turned, counter-clockwise as seen from above; at "
+                   "0 its middle is +x, "
+                   "as in Blender and glTF viewers",
+                   environment_rotation);
     command.flag("--solid-glass",
                  "treat transmissive glTF materials without KHR_materials_volume as solid refractive glass, "
                  "not thin-walled",
                  solid_glass);
-    command.option("--bounces",
-                   "maximum path depth: scattering events after the first hit; 0 = direct light only",
-                   bounces);
+    command.choice(
+        "--light-units",
+        "of point, spot and directional lights in glTF: physical: candela and lux, so that 1 is a radiance "
+        "of 1 at 1 m; "
+        "blender: files exported by Blender, as bright as there compared with its emissive surfaces and sky "
+        "(1/683)",
+        light_units, {"physical", "blender"});
+    command.option(
+        "--bounces",
+        "maximum path depth: diffuse and glossy scattering events after the first hit; 0 = direct light only",
+        bounces);
+    command.option("--specular-bounces",
+                   "maximum number of reflections and refractions of a path by mirrors and smooth glass",
+                   specular_bounces);
     command.choice("--pixel-filter", "pixel reconstruction filter", pixel_filter,
                    {"box", "gaussian", "blackman-harris"});
     command.choice("--renderer",
@@ -132,21 +172,10 @@ Expected<ViewPlan> parse_options(const ViewOptions& options) {
         }
         plan.configuration.materials.emplace_back(text.substr(0, equals), text.substr(equals + 1));
     }
-    if (options.at && !(std::abs(*options.at) <= 1e9))
-        return failure(ErrorCode::InvalidInput, "--at: must be a number of seconds up to 1e9");
-    plan.import.at = options.at;
-    if (options.shutter && !(*options.shutter >= 0.0 && *options.shutter <= 1e9))
-        return failure(ErrorCode::InvalidInput, "--shutter: must be 0 to 1e9 seconds");
-    plan.import.shutter = options.shutter.value_or(0.0);
-    plan.import.animation = options.animation.value_or("");
-    if (options.environment) plan.import.environment = *options.environment;
-    if (!std::isfinite(options.environment_strength) || options.environment_strength < 0.0) {
-        return failure(ErrorCode::InvalidInput, "--env-strength: must be a finite number from 0");
-    }
-    plan.import.environment_strength = static_cast<float>(options.environment_strength);
-    if (options.solid_glass) plan.import.glass = import::Glass::Solid;
+    if (auto fine = set_import(options, plan.import); !fine) return tl::unexpected(fine.error());
     plan.view.seed = options.seed;
     plan.view.max_bounces = options.bounces;
+    plan.view.max_specular_bounces = options.specular_bounces;
     for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted,
                                           view::Renderer::Raster, view::Renderer::Coverage}) {
         if (options.renderer == view::renderer_name(renderer)) plan.view.renderer = renderer;

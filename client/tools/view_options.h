@@ -21,9 +21,10 @@ struct ViewOptions {
     std::optional<double> at, lens_radius, focus, orthographic, shutter;
     std::string aperture;
     std::vector<std::string> hidden, materials;
-    double environment_strength = 1.0;
+    double environment_strength = 1.0, environment_rotation = 0.0;
     bool solid_glass = false;
-    std::uint32_t bounces = 8;
+    std::string light_units = "physical";
+    std::uint32_t bounces = 8, specular_bounces = 32;
     std::string pixel_filter = "box";
     std::uint64_t seed = 0;
     std::string renderer = "path", path_class = "indirect", feature_rule = "demodulated";

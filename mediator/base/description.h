@@ -49,6 +49,9 @@ struct FullWidth {};
 // member has its default value, so that files and messages of older versions stay readable.
 struct InitialWhenAbsent {};
 
+// The same where older versions did what 0 stands for, which is not the default value.
+struct ZeroWhenAbsent {};
+
 // A default-initialised structure.
 template <class T>
 const T& initial() {

@@ -62,6 +62,12 @@ void feed(Blake2b& hash, const T& value) {
                 if (same_bits(row_of<T, I>.of(value), row_of<T, I>.of(initial<T>()))) return;
                 feed(hash, std::uint32_t{row_of<T, I>.number});
             }
+            if constexpr (Row::template has<ZeroWhenAbsent>) {
+                if (same_bits(row_of<T, I>.of(value),
+                              std::remove_cvref_t<decltype(row_of<T, I>.of(value))>{}))
+                    return;
+                feed(hash, std::uint32_t{row_of<T, I>.number});
+            }
             feed(hash, row_of<T, I>.of(value));
         });
     } else {

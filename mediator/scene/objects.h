@@ -216,8 +216,14 @@ constexpr auto enumerators(VisibleBackground) {
     return std::to_array<std::string_view>({"environment", "color"});
 }
 
-// Infinite light: color + strength x environment. Latitude-longitude map; row 0 is +y, the center column is -z at
-// rotation 0 (u grows towards +x); rotated about y.
+// Where the middle column of an environment map lies: u grows towards +x or +z. The first is that of files of older versions;
+// the other is that of glTF viewers, three.js and Blender.
+enum class MapCenter : std::uint8_t { NegativeZ, PositiveX };
+constexpr auto enumerators(MapCenter) {
+    return std::to_array<std::string_view>({"negative_z", "positive_x"});
+}
+
+// Infinite light: color + strength x environment. Latitude-longitude map; row 0 is +y.
 struct Background {
     static constexpr KindRow Kind{ObjectKind::Background, "background", "backgrounds"};
     std::string name;
@@ -227,6 +233,7 @@ struct Background {
     float rotation = 0.0f;
     VisibleBackground visible = VisibleBackground::Environment;
     glm::vec4 visible_color{0.0f};
+    MapCenter map_center = MapCenter::PositiveX;
     // clang-format off
     static constexpr auto describe(auto row) {
         using T = Background;
@@ -235,9 +242,10 @@ struct Background {
             row(2, "color", &T::color, NotNegative, Radiance),
             row(3, "environment", &T::environment, Refers{bit(ObjectKind::Texture)}, Help{"with rgb_float texels; 0 = none"}),
             row(4, "strength", &T::strength, NotNegative),
-            row(5, "rotation", &T::rotation, Radians),
+            row(5, "rotation", &T::rotation, Radians, Help{"of the environment map, counter-clockwise as seen from above"}),
             row(6, "visible", &T::visible, Help{"to camera rays that hit nothing"}),
-            row(7, "visible_color", &T::visible_color, NotNegative, Help{"alpha 0 = transparent"}));
+            row(7, "visible_color", &T::visible_color, NotNegative, Help{"alpha 0 = transparent"}),
+            row(8, "map_center", &T::map_center, ZeroWhenAbsent{}, Help{"the direction of the middle of the environment map, without rotation"}));
     }
     // clang-format on
 };

@@ -1,9 +1,8 @@
 #ifndef TESSERA_MEDIATOR_SHADING_BSDF_H
 #define TESSERA_MEDIATOR_SHADING_BSDF_H
 
-#include "mediator/shading/energy.h"
+#include "mediator/shading/glass_multiscatter.h"
 #include "mediator/shading/phase.h"
-#include "mediator/shading/rough_glass.h"
 #include "mediator/shading/sheen.h"
 #include "mediator/shading/surface_shader_lobes.h"
 
@@ -15,12 +14,13 @@
 //             scattering between facets is compensated by an additional broad lobe (Kulla and Conty 2017)
 //   diffuse   base colour / pi x (1 - S(i)) (1 - S(o)) / (1 - mean S), S(w) = albedo of the dielectric
 //             interface for direction w (Kelemen and Szirmay-Kalos 2001): conserves energy for white
-//   glass     rough boundary of two dielectrics, or of a thin wall; single scattering only
+//   glass     rough boundary of two dielectrics, or of a thin wall, with multiple scattering between facets
+//             as a broad lobe on each side (glass_multiscatter.h)
 // A thin film changes the Fresnel term of specular and glass (thin_film.h); S is then an upper bound. A layer
 // transmits the smaller of its transmittances for wi and wo. Every lobe is reciprocal; the sum conserves
 // energy. The lobes of CommonSurfaceShader are others, in surface_shader_lobes.h: a surface has those or
-// these. Perfect mirrors and smooth glass have no density and are in perfect_specular.h; a material is a
-// mixture of both kinds.
+// these. Perfect mirrors, smooth glass and smooth interfaces over a diffuse base have no density and are in
+// perfect_specular.h; a material is a mixture of both kinds.
 SHADING_BEGIN
 
 // Rare lobes, as feature bits (records.h).
@@ -71,10 +71,15 @@ inline bool is_smooth(float alpha) {
     return alpha <= MinAlpha;
 }
 
+// All of the surface's own facets; the coat has its own.
+inline bool has_smooth_facets(IN(MaterialSample) material_sample) {
+    return is_smooth(greater_of(material_sample.alpha.x, material_sample.alpha.y));
+}
+
 inline Mixture make_mixture(IN(MaterialSample) material_sample) {
     const float opaque = 1.0f - material_sample.metallic;
     Mixture mixture = Mixture(material_sample.metallic, opaque, 0.0f, 0.0f, 0.0f);
-    const bool mirror = is_smooth(greater_of(material_sample.alpha.x, material_sample.alpha.y));
+    const bool mirror = has_smooth_facets(material_sample);
     if (material_sample.transmission > 0.0f) {
         const float glass = opaque * material_sample.transmission;
         const bool clear = mirror || material_sample.eta == 0.0f || !is_boundary(material_sample.eta);
@@ -109,6 +114,7 @@ struct Bsdf {
     vec3 f0;                  // specular reflectance at normal incidence
     float f90;                // and at grazing incidence
     float base_f0, base_f90;  // of the interface above the diffuse lobe
+    bool has_facets;          // the specular lobe has a density: it is rough, and not black
     float dielectric, metal;  // fractions of the components under a thin film (RoughGlass::film)
     vec2 alpha;
     float roughness;          // for the lookup of the specular lobe's albedo: that of the smoother direction
@@ -118,6 +124,7 @@ struct Bsdf {
     float base_out;           // (1 - S(o)) / (1 - mean S) / pi
     float glass_fraction;     // of rough glass
     RoughGlass glass;         // its film is that of all the surface
+    GlassMultiscatter glass_multiscatter;
     float coat, coat_alpha, coat_roughness, coat_out;  // strength; transmittance of the coat for wo
     vec3 coat_normal;
     vec3 sheen;
@@ -145,32 +152,35 @@ inline float interface_transmittance(IN(Bsdf) bsdf, vec2 energy) {
     return greater_of(1.0f - first - bsdf.base_multiscatter * (1.0f - energy.x - energy.y), 0.0f);
 }
 
-inline float coat_transmittance(FloatArray table, IN(Bsdf) bsdf, vec3 w) {
-    const vec2 energy = lobe_energy(table, abs(dot(w, bsdf.coat_normal)), bsdf.coat_roughness);
-    return 1.0f - bsdf.coat * (CoatF0 * energy.x + energy.y);
+// `cosine`: of the direction and the coat's normal, at least 0.
+inline float coat_transmittance(FloatArray table, float coat, float roughness, float cosine) {
+    const vec2 energy = lobe_energy(table, cosine, roughness);
+    return 1.0f - coat * (CoatF0 * energy.x + energy.y);
+}
+inline float coat_passes(FloatArray table, IN(Bsdf) bsdf, vec3 w) {
+    return coat_transmittance(table, bsdf.coat, bsdf.coat_roughness, abs(dot(w, bsdf.coat_normal)));
 }
 
-inline float sheen_transmittance(FloatArray table, IN(Bsdf) bsdf, float cosine) {
-    const float energy = sheen_energy(table, abs(cosine), bsdf.sheen_roughness);
-    return 1.0f - largest(bsdf.sheen) * lesser_of(energy, 1.0f);
+inline float sheen_transmittance(FloatArray table, vec3 sheen, float roughness, float cosine) {
+    const float energy = sheen_energy(table, cosine, roughness);
+    return 1.0f - largest(sheen) * lesser_of(energy, 1.0f);
+}
+inline float sheen_passes(FloatArray table, IN(Bsdf) bsdf, float cosine) {
+    return sheen_transmittance(table, bsdf.sheen, bsdf.sheen_roughness, abs(cosine));
 }
 
 // Transmittance of all layers above base and glass, for light between wo and wi.
 inline float layer_transmittance(FloatArray table, IN(Bsdf) bsdf, vec3 wi) {
     float transmittance = 1.0f;
     if ((bsdf.lobes & FeatureCoat) != 0u)
-        transmittance = lesser_of(coat_transmittance(table, bsdf, wi), bsdf.coat_out);
+        transmittance = lesser_of(coat_passes(table, bsdf, wi), bsdf.coat_out);
     if ((bsdf.lobes & FeatureSheen) != 0u) {
-        transmittance *= lesser_of(sheen_transmittance(table, bsdf, wi.z), bsdf.sheen_out);
+        transmittance *= lesser_of(sheen_passes(table, bsdf, wi.z), bsdf.sheen_out);
     }
     return transmittance;
 }
 
 // ---- construction ----
-
-// Multiple scattering below this fraction (mean over all directions) is left out: it leaves at grazing
-// angles, where no lobe would sample it.
-inline constexpr float MinMultiscatter = 1e-3f;
 
 COLD_NOINLINE inline vec3 thin_film_facet_fresnel(IN(Bsdf) bsdf, float cosine, vec3 plain) {
     const FilmLight light = film_light(bsdf.glass.film, cosine);
@@ -243,8 +253,8 @@ inline void add_layers(INOUT(Bsdf) bsdf, FloatArray table, IN(MaterialSample) ma
     bsdf.sheen = material_sample.sheen_color;
     bsdf.sheen_roughness = material_sample.sheen_roughness;
     bsdf.sheen_alpha = sheen_alpha_of(material_sample.sheen_roughness);
-    if ((bsdf.lobes & FeatureCoat) != 0u) bsdf.coat_out = coat_transmittance(table, bsdf, wo);
-    if ((bsdf.lobes & FeatureSheen) != 0u) bsdf.sheen_out = sheen_transmittance(table, bsdf, wo.z);
+    if ((bsdf.lobes & FeatureCoat) != 0u) bsdf.coat_out = coat_passes(table, bsdf, wo);
+    if ((bsdf.lobes & FeatureSheen) != 0u) bsdf.sheen_out = sheen_passes(table, bsdf, wo.z);
 }
 
 // Sampling probabilities in proportion to the estimated albedos of the lobes for wo; never 0 or 1 if there
@@ -253,9 +263,9 @@ inline void choose_chances(INOUT(Bsdf) bsdf, FloatArray table, float multiscatte
                            float cos_out) {
     const float weight = schlick_weight(cos_out);
     const float below = bsdf.coat_out * bsdf.sheen_out;
-    float specular = luminance(specular_fresnel(bsdf, cos_out)) * below;
+    float specular = bsdf.has_facets ? luminance(specular_fresnel(bsdf, cos_out)) * below : 0.0f;
     // A film that reflects nothing at this angle may do so at others.
-    if ((bsdf.lobes & FeatureIridescence) != 0u) specular = greater_of(specular, 1e-4f);
+    if (bsdf.has_facets && (bsdf.lobes & FeatureIridescence) != 0u) specular = greater_of(specular, 1e-4f);
     float diffuse = luminance(bsdf.diffuse) * (1.0f - bsdf.base_f0) *
                     (1.0f - lesser_of(bsdf.base_f90, 1.0f) * weight) * below;
     diffuse += multiscatter_reflectance * below;  // as broad as the diffuse lobe, and sampled with it
@@ -293,7 +303,13 @@ inline void fill_bsdf(INOUT(Bsdf) bsdf, FloatArray table, IN(MaterialSample) mat
                             material_sample.thin, material_sample.film);
     float multiscatter_reflectance;
     add_specular(bsdf, multiscatter_reflectance, table, mixture, face, material_sample.base_color, wo.z);
+    const bool reflects =
+        bsdf.f90 > 0.0f || largest(bsdf.f0) > 0.0f || (bsdf.lobes & FeatureIridescence) != 0u;
+    // A smooth face over a diffuse base is a perfect specular (surfaces.h), as smooth metal is (make_mixture).
+    bsdf.has_facets = reflects && (mixture.metal > 0.0f || !has_smooth_facets(material_sample));
     if (!(mixture.rough_glass > 0.0f)) bsdf.lobes &= ~FeatureRoughGlass;
+    if ((bsdf.lobes & FeatureRoughGlass) != 0u)
+        bsdf.glass_multiscatter = glass_multiscatter(table, bsdf.glass, bsdf.roughness, wo.z);
     bsdf.coat_out = 1.0f;
     bsdf.sheen_out = 1.0f;
     if ((bsdf.lobes & (FeatureCoat | FeatureSheen)) != 0u) add_layers(bsdf, table, material_sample, wo);
@@ -313,7 +329,7 @@ inline void fill_shader_bsdf(INOUT(Bsdf) bsdf, IN(SurfaceShaderLobes) lobes) {
 inline void evaluate_base(INOUT(BsdfValue) result, FloatArray table, IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
     const vec3 sum = wi + wo;
     const float length2 = dot(sum, sum);
-    if (length2 > 0.0f) {
+    if (bsdf.has_facets && length2 > 0.0f) {
         const vec3 h = sum / sqrt(length2);
         const vec3 fresnel = specular_fresnel(bsdf, dot(wi, h));
         const Facets facets = facets_at(wo, wi, h, bsdf.alpha);
@@ -345,8 +361,14 @@ inline void add_coat(INOUT(BsdfValue) result, IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
     result.pdf += bsdf.chances.z * facets.pdf;
 }
 
-inline void add_glass(INOUT(BsdfValue) result, IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
-    const GlassValue glass = evaluate_rough_glass(bsdf.glass, wo, wi);
+inline void add_glass(INOUT(BsdfValue) result, FloatArray table, IN(Bsdf) bsdf, vec3 wo, vec3 wi) {
+    GlassValue glass = evaluate_rough_glass(bsdf.glass, wo, wi);
+    if (bsdf.glass_multiscatter.chance > 0.0f) {
+        const GlassValue broad =
+            evaluate_glass_multiscatter(table, bsdf.glass, bsdf.glass_multiscatter, bsdf.roughness, wi);
+        glass.value += broad.value;
+        glass.pdf = glass.pdf * (1.0f - bsdf.glass_multiscatter.chance) + broad.pdf;
+    }
     result.value += glass.value * bsdf.glass_fraction;
     result.pdf += glass_chance(bsdf) * glass.pdf;
 }
@@ -371,7 +393,7 @@ inline BsdfValue evaluate_bsdf(FloatArray table, IN(Bsdf) bsdf, vec3 wo, vec3 wi
     const bool glass = (bsdf.lobes & FeatureRoughGlass) != 0u;
     if (!(wo.z > 0.0f) || wi.z == 0.0f || (wi.z < 0.0f && !glass)) return result;
     if (wi.z > 0.0f) evaluate_base(result, table, bsdf, wo, wi);
-    if (glass) add_glass(result, bsdf, wo, wi);
+    if (glass) add_glass(result, table, bsdf, wo, wi);
     if ((bsdf.lobes & (FeatureCoat | FeatureSheen)) == 0u) return result;
     const float passes = layer_transmittance(table, bsdf, wi);
     result.value *= passes;
@@ -382,7 +404,7 @@ inline BsdfValue evaluate_bsdf(FloatArray table, IN(Bsdf) bsdf, vec3 wo, vec3 wi
         add_coat(coat, bsdf, wo, wi);
         float under_sheen = 1.0f;
         if ((bsdf.lobes & FeatureSheen) != 0u) {
-            under_sheen = lesser_of(sheen_transmittance(table, bsdf, wi.z), bsdf.sheen_out);
+            under_sheen = lesser_of(sheen_passes(table, bsdf, wi.z), bsdf.sheen_out);
         }
         result.value += coat.value * under_sheen;
         result.pdf += coat.pdf;
@@ -417,7 +439,9 @@ inline vec3 sample_bsdf(IN(Bsdf) bsdf, vec3 wo, float choice, vec2 u) {
         }
     }
     const float rest = (choice - first) / greater_of(1.0f - first, 1e-6f);
-    return sample_rough_glass(bsdf.glass, wo, rest, u);
+    const float broad = bsdf.glass_multiscatter.chance;
+    if (rest < broad) return sample_glass_multiscatter(bsdf.glass_multiscatter, rest / broad, u);
+    return sample_rough_glass(bsdf.glass, wo, (rest - broad) / (1.0f - broad), u);
 }
 
 SHADING_END

@@ -50,7 +50,7 @@ inline float bvh2_enter(IN(BvhRay) ray, uint child, uvec4 low_item, uvec4 high_i
 
 WITH_CONTEXT
 inline Hit bvh2_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float near, float far, uint query,
-                      uint layers, float time, IN(Context) context, uint seed) {
+                      uint layers, float time, IN(Context) context, IN(Sampler) numbers) {
     Hit hit;
     hit.distance = far;
     hit.barycentric = vec2(0.0f, 0.0f);
@@ -95,7 +95,7 @@ inline Hit bvh2_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, floa
                 const Hit met = bvh_meet(pool, first + i, place, near, query, hit);
                 const bool is_new = met.instance != hit.instance || met.triangle != hit.triangle;
                 const bool needs_alpha_test = is_new && (query & place.flags & BvhAlpha) != 0u;
-                if (!needs_alpha_test || stops_ray(context, met, seed)) hit = met;
+                if (!needs_alpha_test || stops_ray(context, met, numbers)) hit = met;
             }
             child = stack[height];
             height -= height > 0u ? 1u : 0u;

@@ -4,6 +4,7 @@
 #include "mediator/shading/bvh_node.h"
 #include "mediator/shading/motion.h"
 #include "mediator/shading/rays.h"
+#include "mediator/shading/sobol.h"
 
 // Traversal of the two-level acceleration structure. Hits depend on the triangles only, not on the tree or
 // the order of traversal, except for rays within a triangle's plane.
@@ -34,7 +35,7 @@ inline float bvh_row(vec4 row, vec3 v) {
 }
 
 #ifndef __cplusplus
-bool stops_ray(IN(Context) context, IN(Hit) candidate, uint seed);
+bool stops_ray(IN(Context) context, IN(Hit) candidate, IN(Sampler) numbers);
 #endif
 
 // Exact ties go to the lower instance, then to the lower triangle.
@@ -188,11 +189,11 @@ inline bool bvh_meet_row(BvhItems pool, uint first_triangle, INOUT(uint) triangl
 // The closest hit with near < distance <= far, or any; distance = far if there is none. `top`: where the
 // top level's root is, in items. `layers`: instances in none of them are skipped; free of cost if it is the
 // constant AllLayers. `time`: for BvhMotion. The including file defines Context and, before the include,
-//     bool stops_ray(IN(Context) context, IN(Hit) candidate, uint seed)
+//     bool stops_ray(IN(Context) context, IN(Hit) candidate, IN(Sampler) numbers)
 // Memory: BvhStackSize entries of 8 bytes; the builder bounds the depth of every tree.
 WITH_CONTEXT
 inline Hit bvh_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float near, float far, uint query,
-                     uint layers, float time, IN(Context) context, uint seed) {
+                     uint layers, float time, IN(Context) context, IN(Sampler) numbers) {
     Hit hit = Hit(NoInstance, 0u, vec2(0.0f), far);
     uint stack_first[BvhStackSize];
     uint stack_list[BvhStackSize];
@@ -227,7 +228,7 @@ inline Hit bvh_trace(BvhItems pool, uint top, vec3 origin, vec3 direction, float
         }
         const bool needs_alpha_test =
             bvh_meet_row(pool, first_triangle, triangles, place, near, query, hit, candidate);
-        if ((query & BvhAlpha) != 0u && needs_alpha_test && stops_ray(context, candidate, seed))
+        if ((query & BvhAlpha) != 0u && needs_alpha_test && stops_ray(context, candidate, numbers))
             hit = candidate;
         if ((query & BvhAny) != 0u && hit.instance != NoInstance) {
             triangles = 0u;

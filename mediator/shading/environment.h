@@ -5,8 +5,8 @@
 #include "mediator/shading/sampling.h"
 #include "mediator/shading/textures.h"
 
-// The environment light: sampled in proportion to the map's luminance (per texel, including its neighbours,
-// so that all of the bilinearly filtered map can be sampled), or uniformly without a map.
+// The environment light. Of a map, what exceeds its mean luminance is sampled in proportion (MIS compensation,
+// Karlik et al. 2019); BSDF samples alone find the rest, and an environment without a map.
 SHADING_BEGIN
 
 inline bool has_map(IN(Scene) scene) {
@@ -18,7 +18,7 @@ inline float sine_to_pole(vec3 direction) {
     return sqrt(direction.x * direction.x + direction.z * direction.z);
 }
 
-// Texture coordinates of a direction in a map rotated by `rotation`, in [0, 1].
+// Texture coordinates of a direction, in [0, 1], in a map whose middle is -z, rotated by `rotation`.
 inline vec2 direction_to_uv(vec3 direction, float rotation) {
     const float u = 0.5f + (arc_tangent(direction.x, -direction.z) + rotation) * (0.5f * InversePi);
     return vec2(u - floor(u), arc_tangent(sine_to_pole(direction), direction.y) * InversePi);
@@ -26,11 +26,11 @@ inline vec2 direction_to_uv(vec3 direction, float rotation) {
 
 struct Sky {
     vec3 radiance;
-    float pdf;  // of sample_sky, per solid angle
+    float pdf;  // of sample_sky, per solid angle; may be 0 where the sky is not black
 };
 
 inline Sky sky_at(IN(Scene) scene, vec3 direction) {
-    Sky sky = Sky(scene.environment.color, 1.0f / (4.0f * Pi));
+    Sky sky = Sky(scene.environment.color, 0.0f);
     if (!has_map(scene)) return sky;
     const vec2 uv = direction_to_uv(direction, scene.environment.rotation);
     sky.radiance += scene.environment.strength * vec3(lookup(scene, scene.environment.map, uv));
@@ -46,8 +46,8 @@ inline Sky sky_at(IN(Scene) scene, vec3 direction) {
     return sky;
 }
 
+// Needs a map.
 inline vec3 sample_sky(IN(Scene) scene, vec2 u) {
-    if (!has_map(scene)) return sample_sphere(u);
     const uint width = scene.environment.map.width;
     const uint height = scene.environment.map.height;
     const Choice row = choose(scene.cdfs, scene.environment.row_cdf, height, u.y);

@@ -148,7 +148,7 @@ struct EquiangularWeights {
 };
 inline EquiangularWeights equiangular_weights(IN(Scene) scene, uint strategy,
                                               IN(EquiangularSample) equiangular, IN(LightSample) light,
-                                              IN(Receiver) place) {
+                                              IN(Receiver) place, uint layers) {
     EquiangularWeights weights = EquiangularWeights(1.0f, light.chance);
     if (!equiangular.is_active || light.emitter < 0) return weights;
     const uint emitter = uint(light.emitter);
@@ -156,7 +156,7 @@ inline EquiangularWeights equiangular_weights(IN(Scene) scene, uint strategy,
     Receiver other = receiver_along(equiangular.span);
     if (equiangular.is_equiangular) other = place;
     weights.other_probability = leaf_probability(scene, node, other);
-    if (equiangular.is_equiangular) weights.other_probability *= scene.tree_probability;
+    if (equiangular.is_equiangular) weights.other_probability *= tree_chance(scene, layers, place);
     float by_equiangular = equiangular.pdf * light.chance,
           by_flight = equiangular.density * weights.other_probability;
     if (!equiangular.is_equiangular) {

@@ -146,7 +146,7 @@ static_assert(offsetof(Medium, textures) == 80);
 
 static_assert(sizeof(LightSource) == 108);
 static_assert(offsetof(LightSource, kind) == 0);
-static_assert(offsetof(LightSource, probability) == 4);
+static_assert(offsetof(LightSource, irradiance) == 4);
 static_assert(offsetof(LightSource, intensity) == 8);
 static_assert(offsetof(LightSource, position) == 20);
 static_assert(offsetof(LightSource, direction) == 32);
@@ -211,8 +211,8 @@ static_assert(offsetof(Scene, environment) == 128);
 static_assert(offsetof(Scene, instance_count) == 232);
 static_assert(offsetof(Scene, light_count) == 236);
 static_assert(offsetof(Scene, tree_light_count) == 240);
-static_assert(offsetof(Scene, light_cdf) == 244);
-static_assert(offsetof(Scene, tree_probability) == 248);
+static_assert(offsetof(Scene, unused) == 244);
+static_assert(offsetof(Scene, tree_intensity) == 248);
 static_assert(offsetof(Scene, environment_light) == 252);
 static_assert(offsetof(Scene, features) == 256);
 static_assert(offsetof(Scene, tree_scale) == 260);
@@ -244,6 +244,6 @@ static_assert(offsetof(View, focus_distance) == 132);
 static_assert(offsetof(View, camera_keys) == 136);
 static_assert(offsetof(View, camera_key_intervals) == 144);
 static_assert(offsetof(View, containing_media) == 148);
-static_assert(offsetof(View, unused) == 164);
+static_assert(offsetof(View, max_specular_events) == 164);
 
 }  // namespace tessera::shading

@@ -45,9 +45,9 @@ WITH_CONTEXT inline void add_area_light(IN(Context) context, INOUT(Path) path, I
             hit = light.kind == LightSphere ? hit_sphere(light, whole)
                                             : hit_quad(light, emitter.inverse_root_area, whole);
         }
-        const Receiver receiver = Receiver(path.last_position, path.last_normal, vec3(0.0f));
-        other = context.scene.tree_probability * leaf_probability(context.scene, emitter.node, receiver) *
-                hit.pdf;
+        const Receiver receiver = last_receiver(path);
+        other = tree_chance(context.scene, context.view.layers, receiver) *
+                leaf_probability(context.scene, emitter.node, receiver) * hit.pdf;
     }
     const float weight = weight_by_chance(context.view, path, other);
     vec3 arriving = path.throughput * light.intensity * weight;
@@ -92,8 +92,14 @@ WITH_CONTEXT inline void add_sun_disks(IN(Context) context, INOUT(Path) path, IN
         if (!is_seen(context.scene, light, context.view.layers)) continue;
         if (!is_in_cone(-light.direction, light.one_minus_cos_half_angle, ray.direction)) continue;
         connect_light(path.found, context.view, path.probability * light.intensity);
-        const float weight = weight_by_chance(context.view, path,
-                                              light.probability * cone_pdf(light.one_minus_cos_half_angle));
+        float other = 0.0f;
+        if (path.bsdf_pdf > 0.0f) {
+            // By the light at shutter open, as for the choice.
+            other = distant_chance(context.scene, context.view.layers, context.scene.lights.items[i],
+                                   last_receiver(path)) *
+                    cone_pdf(light.one_minus_cos_half_angle);
+        }
+        const float weight = weight_by_chance(context.view, path, other);
         add_light(path.found, context.view, path.throughput * light.intensity * weight, path.class_info);
         log_emission(context, light.intensity, ray.direction);
     }

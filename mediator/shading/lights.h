@@ -3,11 +3,11 @@
 
 #include "mediator/shading/area_lights.h"
 #include "mediator/shading/environment.h"
-#include "mediator/shading/light_tree.h"
+#include "mediator/shading/light_choice.h"
 #include "mediator/shading/surfaces.h"
+#include "mediator/shading/triangle_lights.h"
 
-// Samples one light, and a point on it. First chooses the light tree or one of the infinite lights by power;
-// in the tree, one emitter.
+// Samples one light, and a point on it.
 SHADING_BEGIN
 
 // A sampled point of a light, as seen from a surface.
@@ -51,12 +51,12 @@ inline LightSample sample_point_light(IN(LightSource) light, IN(Surface) surface
     return found;
 }
 
-inline LightSample sample_distant_light(IN(LightSource) light, vec3 direction, vec3 radiance) {
+inline LightSample sample_distant_light(float probability, vec3 direction, vec3 radiance) {
     LightSample found = no_light();
     found.direction = direction;
     found.radiance = radiance;
     found.intensity = radiance;
-    found.pdf = light.probability;
+    found.pdf = probability;
     found.distant = true;
     return found;
 }
@@ -90,13 +90,20 @@ inline LightSample sample_quad_light(IN(Emitter) emitter, IN(LightSource) light,
     return found;
 }
 
+inline float triangle_pdf(IN(TriangleView) seen, float inverse_root_area, float distance, float facing) {
+    if (is_by_solid_angle(seen)) return 1.0f / seen.solid_angle;
+    return area_pdf(inverse_root_area, distance, facing);
+}
+
 inline LightSample sample_mesh_light(IN(Scene) scene, IN(Emitter) emitter, float probability,
                                      IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
                                      IN(Surface) surface, vec2 u) {
     LightSample found = no_light();
     const uvec3 corners = mesh.triangles.items[emitter.triangle];
-    const vec2 b = sample_triangle(u);
     const Triangle triangle = triangle_of(mesh, corners);
+    const float inverse_root_area = inverse_root_area_of(scene, emitter, instance, triangle);
+    const TriangleView seen = view_triangle(instance, triangle, inverse_root_area, surface.position);
+    const vec2 b = sample_triangle_light(seen, u);
     const PointWithError point = point_on(instance, triangle, b);
     const vec3 offset = point.position - surface.position;
     const DirectionAndDistance to_light = direction_and_distance(offset);
@@ -104,7 +111,9 @@ inline LightSample sample_mesh_light(IN(Scene) scene, IN(Emitter) emitter, float
     const float facing = -dot(normal, to_light.direction);
     if (facing == 0.0f || (facing < 0.0f && material.double_sided == 0u)) return found;
     found.direction = to_light.direction;
-    found.radiance = emission_at(scene, material, mesh, corners, b);
+    found.radiance = emission_at(scene, material, mesh, corners, b) *
+                     emission_transmittance(scene, instance, mesh, material, triangle, corners, b, normal,
+                                            to_light.direction);
     if ((scene.features & FeatureAlpha) != 0u && material.alpha_mode != AlphaOpaque) {
         // The probability with which rays stop here (stops_at).
         const float alpha = alpha_at(scene, material, mesh, corners, b);
@@ -112,8 +121,7 @@ inline LightSample sample_mesh_light(IN(Scene) scene, IN(Emitter) emitter, float
         found.radiance *= material.alpha_mode == AlphaMask ? masked : clamp(alpha, 0.0f, 1.0f);
     }
     found.intensity = found.radiance;
-    const float inverse_root_area = inverse_root_area_of(scene, emitter, instance, triangle);
-    found.pdf = probability * area_pdf(inverse_root_area, to_light.distance, abs(facing));
+    found.pdf = probability * triangle_pdf(seen, inverse_root_area, to_light.distance, abs(facing));
     // Offset by the point's own error and the rounding error of the shadow ray's segment.
     const vec3 error = point.error + motion_error(scene, instance, mesh, triangle, b, point.position) +
                        2.0f * 5.9604644775390625e-8f * abs(offset);
@@ -146,15 +154,15 @@ inline LightSample sample_emitter(IN(Scene) scene, IN(Emitter) emitter, IN(Light
     return sample_point_light(light, surface, probability);
 }
 
-inline LightSample sample_distant(IN(Scene) scene, IN(LightSource) light, vec2 u) {
+inline LightSample sample_distant(IN(Scene) scene, IN(LightSource) light, float probability, vec2 u) {
     if (light.kind == LightEnvironment) {
         const vec3 direction = sample_sky(scene, u);
         const Sky sky = sky_at(scene, direction);
-        LightSample found = sample_distant_light(light, direction, sky.radiance);
+        LightSample found = sample_distant_light(probability, direction, sky.radiance);
         found.pdf *= sky.pdf;
         return found;
     }
-    LightSample found = sample_distant_light(light, -light.direction, light.intensity);
+    LightSample found = sample_distant_light(probability, -light.direction, light.intensity);
     found.delta = !((scene.features & FeatureSunDisks) != 0u && light.one_minus_cos_half_angle > 0.0f);
     if (found.delta) return found;
     found.direction = sample_cone(found.direction, light.one_minus_cos_half_angle, u);
@@ -162,14 +170,11 @@ inline LightSample sample_distant(IN(Scene) scene, IN(LightSource) light, vec2 u
     return found;
 }
 
-inline bool is_seen(IN(Scene) scene, IN(LightSource) light, uint layers) {
-    return (scene.features & FeatureLayers) == 0u || (light.layers & layers) != 0u;
-}
-
 // Transmissive surfaces receive light from both sides; points in media have no normal.
 inline Receiver receiver_at(IN(Surface) surface) {
     const bool through = (surface.bsdf.lobes & FeatureRoughGlass) != 0u;
-    return Receiver(surface.position, through ? vec3(0.0f) : surface.geometric_normal, vec3(0.0f));
+    const vec3 normal = surface.is_smooth ? surface.frame[2] : surface.geometric_normal;
+    return Receiver(surface.position, through ? vec3(0.0f) : normal, vec3(0.0f));
 }
 
 inline LightSample sample_chosen(IN(Scene) scene, uint layers, IN(Surface) surface, IN(Emitter) emitter,
@@ -192,55 +197,52 @@ inline LightSample sample_tree(IN(Scene) scene, uint layers, IN(Surface) surface
     return found;
 }
 
-// A light in none of the view's layers contributes nothing; choosing it wastes the sample, so that the choice
-// is the same for all views. If hidden lights have probability p, the variance grows by 1 / (1 - p). `given`:
-// an emitter that has been chosen already, if any.
+// An emitter in none of the view's layers contributes nothing; choosing it wastes the sample, since all views
+// have the same tree. If hidden emitters have probability p, the variance grows by 1 / (1 - p). `given`: an
+// emitter that has been chosen already, if any.
 inline LightSample sample_light(IN(Scene) scene, uint layers, IN(Surface) surface, IN(ChosenEmitter) given,
                                 vec2 choice, vec2 u) {
     ChosenEmitter emitter = given;
     if (!(given.probability > 0.0f)) {
-        if (scene.light_count == 0u) return no_light();
-        const uint distant_count = scene.light_count - scene.tree_light_count;
-        vec2 rest = choice;
-        if (distant_count > 0u) {
-            const Choice chosen = choose(scene.cdfs, scene.light_cdf, distant_count + 1u, choice.x);
-            if (chosen.index > 0u) {
-                const uint index = scene.tree_light_count + chosen.index - 1u;
-                if (!is_seen(scene, scene.lights.items[index], layers)) return no_light();
-                return sample_distant(scene, light_at(scene, scene.lights.items[index], surface.time), u);
-            }
-            rest.x = chosen.rest;
-        }
-        emitter = choose_emitter(scene, receiver_at(surface), rest);
-        emitter.probability *= scene.tree_probability;
+        const Receiver receiver = receiver_at(surface);
+        const ChosenLight chosen = choose_light(scene, layers, receiver, choice.x);
+        if (!(chosen.probability > 0.0f)) return no_light();
+        if (chosen.index >= scene.tree_light_count)
+            return sample_distant(scene, light_at(scene, scene.lights.items[chosen.index], surface.time),
+                                  chosen.probability, u);
+        emitter = choose_emitter(scene, receiver, vec2(chosen.rest, choice.y));
+        emitter.probability *= chosen.probability;
     }
     return sample_tree(scene, layers, surface, emitter, u);
 }
 
-// 1 / the square root of the area of the triangle that was hit, of this emitter.
-inline float inverse_root_area_at(IN(Scene) scene, IN(Emitter) emitter, IN(Surface) hit) {
-    if ((scene.features & FeatureMotion) == 0u) return emitter.inverse_root_area;
-    const Instance instance = scene.instances.items[scene.lights.items[hit.light].instance];
+// Density with which a point of the triangle that was hit is sampled from a place, per solid angle.
+inline float hit_triangle_pdf(IN(Scene) scene, IN(Emitter) emitter, IN(Surface) hit, vec3 from) {
+    const Instance resting = scene.instances.items[scene.lights.items[hit.light].instance];
+    const Instance instance = instance_at(scene, resting, hit.time);
     Mesh mesh = mesh_at(scene, scene.meshes.items[instance.mesh], hit.time);
-    return inverse_root_area_of(scene, emitter, instance_at(scene, instance, hit.time),
-                                triangle_of(mesh, mesh.triangles.items[hit.triangle]));
+    const Triangle triangle = triangle_of(mesh, mesh.triangles.items[hit.triangle]);
+    const float inverse_root_area = inverse_root_area_of(scene, emitter, instance, triangle);
+    const TriangleView seen = view_triangle(instance, triangle, inverse_root_area, from);
+    const DirectionAndDistance to_light = direction_and_distance(hit.position - from);
+    return triangle_pdf(seen, inverse_root_area, to_light.distance,
+                        abs(dot(hit.geometric_normal, to_light.direction)));
 }
 
 // Density with which sample_light finds, for a receiver, the point of a mesh light that was hit.
-inline float mesh_light_pdf(IN(Scene) scene, IN(Surface) hit, IN(Receiver) receiver) {
+inline float mesh_light_pdf(IN(Scene) scene, uint layers, IN(Surface) hit, IN(Receiver) receiver) {
     if ((scene.features & FeatureMeshLights) == 0u || hit.light < 0) return 0.0f;
     const Emitter emitter = scene.emitters.items[scene.lights.items[hit.light].first_emitter + hit.triangle];
     if (emitter.node == NoLightNode) return 0.0f;
-    const DirectionAndDistance to_light = direction_and_distance(hit.position - receiver.position);
-    const float cosine_there = abs(dot(hit.geometric_normal, to_light.direction));
-    const float probability = scene.tree_probability * leaf_probability(scene, emitter.node, receiver);
-    return probability * area_pdf(inverse_root_area_at(scene, emitter, hit), to_light.distance, cosine_there);
+    const float probability =
+        tree_chance(scene, layers, receiver) * leaf_probability(scene, emitter.node, receiver);
+    return probability * hit_triangle_pdf(scene, emitter, hit, receiver.position);
 }
 
 // The same of a direction to the sky.
-inline float sky_light_pdf(IN(Scene) scene, IN(Sky) sky) {
+inline float sky_light_pdf(IN(Scene) scene, uint layers, IN(Sky) sky, IN(Receiver) receiver) {
     if (scene.environment_light < 0) return 0.0f;
-    return scene.lights.items[scene.environment_light].probability * sky.pdf;
+    return distant_chance(scene, layers, scene.lights.items[scene.environment_light], receiver) * sky.pdf;
 }
 
 SHADING_END

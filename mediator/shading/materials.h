@@ -56,22 +56,26 @@ inline vec3 emission_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, u
     return material.emission * vec3(texel_of(scene, material.emission_texture, mesh, corners, b, 0.0f));
 }
 
+inline constexpr uint AlphaPair = 0u;  // of the sequence of one triangle
+
 inline bool alpha_stops(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uint instance, uint triangle,
-                        vec2 b, uint seed) {
+                        vec2 b, IN(Sampler) numbers) {
     const float alpha = alpha_at(scene, material, mesh, mesh.triangles.items[triangle], b);
     if (material.alpha_mode == AlphaOpaque) return true;
     if (material.alpha_mode == AlphaMask) return alpha >= material.alpha_cutoff;
-    return unit_float(hash_combine(hash_combine(seed, instance), triangle)) < alpha;
+    const uint seed = hash_combine(hash_combine(numbers.seed, instance), triangle);
+    return sample_pair(Sampler(numbers.index, seed), AlphaPair).x < alpha;
 }
 
-// Whether a surface with alpha stops a ray. Mask: by the cutoff. Blend: by a hash of the ray's seed and the
-// triangle, so that the result does not depend on the order in which triangles are visited; on average a
-// fraction alpha of the rays stops. Medium boundaries always stop rays, since crossing one changes the
+// Whether a surface with alpha stops a ray. Mask: by the cutoff. Blend: by a random number of its own for each
+// triangle, stratified over the samples, so that the result does not depend on the order in which triangles
+// are visited; a fraction alpha of the rays stops. Medium boundaries always stop rays, since crossing one changes the
 // containing media; passes_boundary tests whether there is a surface as well.
-inline bool stops_at(IN(Scene) scene, uint instance, uint triangle, vec2 b, uint seed) {
+inline bool stops_at(IN(Scene) scene, uint instance, uint triangle, vec2 b, IN(Sampler) numbers) {
     if ((scene.features & FeatureMedia) != 0u && scene.instances.items[instance].medium >= 0) return true;
     return alpha_stops(scene, scene.materials.items[scene.instances.items[instance].material],
-                       scene.meshes.items[scene.instances.items[instance].mesh], instance, triangle, b, seed);
+                       scene.meshes.items[scene.instances.items[instance].mesh], instance, triangle, b,
+                       numbers);
 }
 
 // Whether light may go straight through the instance, as through a pane of clear glass. On the way to a light

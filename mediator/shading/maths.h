@@ -23,6 +23,9 @@ inline float greater_of(float a, float b) {
 inline float lesser_of(float a, float b) {
     return a < b || is_nan(b) ? a : b;
 }
+inline vec3 greater_of(vec3 v, float least) {
+    return vec3(greater_of(v.x, least), greater_of(v.y, least), greater_of(v.z, least));
+}
 inline float largest(vec3 v) {
     return greater_of(v.x, greater_of(v.y, v.z));
 }

@@ -25,9 +25,9 @@ inline MediumTraversal new_traversal(vec3 origin) {
 
 // Paths scatter at random; branches of perfect speculars scatter once on each segment (single scattering). No
 // scattering beyond the maximum path depth.
-inline uint segment_kind(IN(Path) path, uint stage, bool passes, uint max_scatter_events) {
+inline uint segment_kind(IN(Path) path, IN(View) view, uint stage, bool passes) {
     if (stage == StageBranch && !passes) return SegmentScatters;
-    return stage == StagePath && may_scatter(path, max_scatter_events) ? SegmentMayScatter : SegmentTransmits;
+    return stage == StagePath && may_scatter(path, view, false) ? SegmentMayScatter : SegmentTransmits;
 }
 
 // The equiangular sample uses a disjoint range of RNG dimensions: those of a vertex index that no path

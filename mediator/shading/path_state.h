@@ -82,8 +82,7 @@ inline void start_branch(INOUT(PathState) state, IN(Branch) branch) {
 WITH_CONTEXT inline void cross_medium(IN(Context) context, IN(PathState) state, INOUT(PathEvent) event) {
     const bool connects = event.purpose == RayConnects;
     const uint kind =
-        connects ? SegmentTransmits
-                 : segment_kind(state.path, state.stage, state.passes, context.view.max_scatter_events);
+        connects ? SegmentTransmits : segment_kind(state.path, context.view, state.stage, state.passes);
     if (event.is_lit)
         event.light = sample_equiangular(context, state.path, state.ray, state.traversal, event.end, kind);
     event.segment = traverse_segment(context, state.path, state.ray, state.traversal,
@@ -105,7 +104,8 @@ WITH_CONTEXT inline PathEvent next_event(IN(Context) context, INOUT(PathState) s
     event.purpose = RayExtends;
     if (scatters && state.deferred.is_active) event.purpose = RayResumes;
     if (connects && state.connection.is_open) event.purpose = RayConnects;
-    const uint seed = event.purpose == RayConnects ? state.connection.seed : closest_seed(state.path);
+    Sampler numbers = path_ray_numbers(state.path);
+    if (event.purpose == RayConnects) numbers = state.connection.numbers;
     if (event.purpose == RayResumes) {
         event.hit = state.deferred.hit;
         event.is_hit = state.deferred.is_hit;
@@ -115,10 +115,10 @@ WITH_CONTEXT inline PathEvent next_event(IN(Context) context, INOUT(PathState) s
             event.hit = first_hit.hit;
             event.is_hit = first_hit.hit.instance != NoInstance;
         } else {
-            event.is_hit = trace_closest(context, state.ray, seed, state.traversal.skip, event.hit);
+            event.is_hit = trace_closest(context, state.ray, numbers, state.traversal.skip, event.hit);
         }
     }
-    const bool is_boundary = opens && event.is_hit && passes_boundary(context.scene, event.hit, seed);
+    const bool is_boundary = opens && event.is_hit && passes_boundary(context.scene, event.hit, numbers);
     if (opens && event.purpose != RayResumes)
         finish_crossing(context.scene, state.traversal, state.path.containing_media,
                         event.is_hit && !is_boundary, event.hit);

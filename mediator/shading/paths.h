@@ -26,8 +26,9 @@ struct SpecularChain {
 // A path: what it carries, and what it has gathered so far.
 struct Path {
     Sampler numbers;
-    uint vertex;  // scattering events so far
-    uint walls;   // of them straight through thin walls: no scattering, and not limited
+    uint vertex;     // scattering events so far
+    uint walls;      // of them straight through thin walls: no scattering, and not limited
+    uint speculars;  // of them by perfect speculars otherwise
     vec3 throughput;
     float probability;  // of this branch, if all branches are followed
     float bsdf_pdf;     // of its direction; 0 = from the camera or a perfect specular
@@ -51,7 +52,7 @@ inline PathSample empty_path_sample() {
 }
 
 inline Path start_path(IN(Sampler) numbers) {
-    return Path(numbers, 0u, 0u, vec3(1.0f), 1.0f, 0.0f, vec3(0.0f), vec3(0.0f), RayCone(0.0f, 0.0f),
+    return Path(numbers, 0u, 0u, 0u, vec3(1.0f), 1.0f, 0.0f, vec3(0.0f), vec3(0.0f), RayCone(0.0f, 0.0f),
                 SpecularChain(false, -1), no_media(), direct_class_info(), empty_path_sample(), 0u);
 }
 
@@ -60,17 +61,20 @@ inline uint channel_of(IN(Sampler) numbers) {
     return (numbers.index % 3u + numbers.seed % 3u) % 3u;
 }
 
-// Whether the path may scatter once more.
-inline bool may_scatter(IN(Path) path, uint max_scatter_events) {
-    return path.vertex - path.walls < max_scatter_events;
+// Whether the path may scatter once more, by a perfect specular or otherwise.
+inline bool may_scatter(IN(Path) path, IN(View) view, bool is_specular) {
+    return is_specular ? path.speculars < view.max_specular_events
+                       : path.vertex - path.walls - path.speculars < view.max_scatter_events;
 }
 
-// Seeds of the two kinds of rays at a vertex, for surfaces with alpha.
-inline uint closest_seed(IN(Path) path) {
-    return hash_combine(hash_combine(path.numbers.seed, path.numbers.index), 2u * path.vertex);
+// Sequences of the two kinds of rays at a vertex, for surfaces with alpha.
+inline constexpr uint AlphaSequences = 0x60000000u;
+inline Sampler path_ray_numbers(IN(Path) path) {
+    return Sampler(path.numbers.index, hash_combine(path.numbers.seed, AlphaSequences + 2u * path.vertex));
 }
-inline uint shadow_seed(IN(Path) path) {
-    return hash_combine(hash_combine(path.numbers.seed, path.numbers.index), 2u * path.vertex + 1u);
+inline Sampler shadow_ray_numbers(IN(Path) path) {
+    return Sampler(path.numbers.index,
+                   hash_combine(path.numbers.seed, AlphaSequences + 2u * path.vertex + 1u));
 }
 
 // Pairs of random numbers: the first is the camera's, then each vertex has its own.

@@ -7,6 +7,7 @@
 // in the shading frame (z = normal) and point away from the surface.
 //   mirror  Schlick's Fresnel with F0 = base colour, or a film's on it (thin_film.h)
 //   glass   Fresnel's equations; refracted light is tinted by the base colour at every crossing
+//   face    of a smooth dielectric over its diffuse base: the specular lobe's Fresnel (surfaces.h)
 // Light is carried as basic radiance L / n^2 (Nicodemus 1963), which refraction does not change: the factors
 // 1/eta^2 and eta^2 of entering and leaving a closed mesh cancel. Only emitters inside of glass are as
 // they would be in air.

@@ -208,8 +208,8 @@ inline constexpr uint LightPoint = 0u, LightSpot = 1u, LightDirectional = 2u, Li
 
 struct LightSource {
     uint kind;
-    float probability;  // selection probability of an infinite light; the others are in the light tree
-    vec3 intensity;     // of lights with a size (sphere, quad, sun disk): radiance
+    float irradiance;  // of an infinite light, on a surface that faces it, as a weight (light_choice.h)
+    vec3 intensity;    // of lights with a size (sphere, quad, sun disk): radiance
     vec3 position;
     vec3 direction;  // of emission
     float cos_inner;
@@ -325,10 +325,10 @@ struct Scene {
     Environment environment;
     uint instance_count;
     uint light_count;
-    uint tree_light_count;   // of them in the tree
-    uint light_cdf;          // index of the cumulative distribution: the tree, then each infinite light
-    float tree_probability;  // of being chosen
-    int environment_light;   // index of the environment's light source, or -1
+    uint tree_light_count;  // of them in the tree
+    uint unused;            // keeps the size a multiple of an address's
+    float tree_intensity;   // times expected_light() of its nodes: their irradiance, as of an infinite light
+    int environment_light;  // index of the environment's light source, or -1
     FeatureBits features;
     float tree_scale;  // a power of two that scales the light tree's extent to about 1
 };
@@ -375,8 +375,8 @@ struct View {
     float focus_distance;
     Affine3x4Array camera_keys;  // motion keys of a moving camera, the first one at shutter open
     uint camera_key_intervals;
-    uvec4 containing_media;  // instances of the media that the eye is in (containing_media.h)
-    uint unused;             // keeps the size a multiple of an address's
+    uvec4 containing_media;    // instances of the media that the eye is in (containing_media.h)
+    uint max_specular_events;  // perfect reflections and refractions of a path
 };
 
 RECORDS_END

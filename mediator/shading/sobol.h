@@ -8,6 +8,16 @@
 // Dimensions come in pairs: each pair is a separate (0,2)-sequence, its index and its two coordinates
 // scrambled by hashes of (pixel, pair), so that pairs and pixels are independent of each other and every
 // aligned power-of-two block of samples is stratified.
+RECORDS_BEGIN
+
+// Identifies the sequence of one sample of one pixel.
+struct Sampler {
+    uint index;  // of the sample, low 32 bits
+    uint seed;   // of (pixel, view's seed, high bits of the index)
+};
+
+RECORDS_END
+
 SHADING_BEGIN
 
 inline uint hash_u32(uint x) {
@@ -52,12 +62,6 @@ inline uint sobol_second(uint reversed) {
 inline float unit_float(uint bits) {
     return float(bits >> 8) * 5.9604644775390625e-8f;
 }  // [0, 1 - 2^-24]
-
-// Identifies the sequence of one sample of one pixel.
-struct Sampler {
-    uint index;  // of the sample, low 32 bits
-    uint seed;   // of (pixel, view's seed, high bits of the index)
-};
 
 inline Sampler make_sampler(uint x, uint y, uint64_t seed, uint64_t index) {
     uint s = hash_combine(hash_u32(x), y);

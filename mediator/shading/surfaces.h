@@ -5,6 +5,7 @@
 #include "mediator/shading/motion.h"
 #include "mediator/shading/perfect_specular.h"
 #include "mediator/shading/ray_cones.h"
+#include "mediator/shading/shading_normals.h"
 #include "mediator/shading/surface_shader_eval.h"
 #include "mediator/shading/triangle_points.h"
 
@@ -12,8 +13,10 @@ SHADING_BEGIN
 
 // A shading point: what a path needs to know of its current vertex.
 struct Surface {
-    vec3 position;
-    vec3 error;             // bound of the position's rounding error, per axis
+    vec3 position;  // on the smooth surface that the mesh stands for, `lift` above the triangle
+    vec3 error;     // bound of the position's rounding error, per axis
+    vec3 lift;
+    bool is_smooth;         // has such a lift: directions count as by the shading normal alone
     vec3 geometric_normal;  // unit length, on the side that the path came from
     mat3 frame;             // shading frame, third axis = shading normal, same side
     vec3 albedo;
@@ -61,15 +64,6 @@ inline vec3 mapped_normal(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     return direction_of(tangent * n.x + bitangent * n.y + normal * n.z, normal);
 }
 
-// The shading normal on the side that `direction` arrives on. If it faces away from the viewer, the geometric
-// normal is used instead.
-inline vec3 seen_normal(vec3 normal, vec3 face, vec3 direction) {
-    const bool front = dot(face, direction) < 0.0f;
-    const vec3 seen = front ? normal : -normal;
-    if (dot(seen, direction) < 0.0f) return seen;
-    return front ? face : -face;
-}
-
 inline vec3 shading_normal(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
                            IN(Triangle) t, uvec3 corners, vec2 b, vec3 face, vec3 direction) {
     if (has_surface_shader(scene, material)) {
@@ -104,11 +98,13 @@ inline mat3 shading_frame(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     return mat3(x, cross(normal, x), normal);
 }
 
-// Directions by the shading normal if they leave on the correct sides of the surface, else by the geometric
-// normal: no light may get lost at the silhouette of a smooth object. Total reflection must hold for both
-// normals, otherwise light could be trapped inside of a smooth object, which light from outside cannot be.
+// Directions by the shading normal, turned where the mirrored ray would enter the face; by the geometric normal where
+// the refracted one would not. No light may get lost at the silhouette of a smooth object. Total reflection must hold
+// for both normals, otherwise light could be trapped inside of a smooth object, which light from outside cannot be.
 inline Specular specular_at(IN(Surface) surface, IN(Mixture) mixture, IN(RoughGlass) glass, vec3 direction) {
+    const vec3 normal = mirroring_normal(surface.frame[2], surface.geometric_normal, direction);
     mat3 frame = surface.frame;
+    if (normal != surface.frame[2]) frame = frame_around(normal);
     Specular specular = make_specular(mixture, glass, -direction * frame);
     const vec3 up = surface.geometric_normal * frame;
     bool consistent = dot(specular.reflected, up) > 0.0f;
@@ -129,23 +125,24 @@ inline Specular specular_at(IN(Surface) surface, IN(Mixture) mixture, IN(RoughGl
 
 // A smooth coat is an additional perfect mirror with its own normal, unless the base or glass is a perfect
 // specular as well: then they share one direction.
-inline void add_smooth_coat(INOUT(Surface) surface, IN(MaterialSample) material_sample, IN(Mixture) mixture,
+inline void add_smooth_coat(INOUT(Surface) surface, IN(MaterialSample) material_sample, bool shares_direction,
                             vec3 direction) {
     vec3 normal = surface.frame * material_sample.coat_normal;
-    const bool shares_direction = mixture.mirror > 0.0f || mixture.glass > 0.0f;
-    vec3 reflected = direction - 2.0f * dot(direction, normal) * normal;
-    if (!shares_direction && !(dot(reflected, surface.geometric_normal) > 0.0f)) {
-        normal = surface.geometric_normal;
-        reflected = direction - 2.0f * dot(direction, normal) * normal;
+    if (!shares_direction) {
+        normal = mirroring_normal(normal, surface.geometric_normal, direction);
+        surface.specular.reflected = unit_vector(direction - 2.0f * dot(direction, normal) * normal);
     }
-    if (!shares_direction) surface.specular.reflected = unit_vector(reflected);
     const float fresnel = CoatF0 + (1.0f - CoatF0) * schlick_weight(abs(dot(direction, normal)));
     surface.specular.reflection += vec3(material_sample.coat * fresnel * surface.bsdf.sheen_out);
 }
 
 inline void set_specular(INOUT(Surface) surface, IN(MaterialSample) material_sample, IN(Mixture) mixture,
                          vec3 direction) {
-    const bool perfect = mixture.mirror > 0.0f || mixture.glass > 0.0f;
+    // A smooth face over the diffuse base.
+    const bool smooth_face = mixture.dielectric > 0.0f && has_smooth_facets(material_sample) &&
+                             (surface.bsdf.f90 > 0.0f || largest(surface.bsdf.f0) > 0.0f ||
+                              (surface.bsdf.lobes & FeatureIridescence) != 0u);
+    const bool perfect = mixture.mirror > 0.0f || mixture.glass > 0.0f || smooth_face;
     const bool smooth_coat =
         (material_sample.lobes & FeatureCoat) != 0u && is_smooth(surface.bsdf.coat_alpha);
     if (!perfect && !smooth_coat) return;
@@ -153,22 +150,31 @@ inline void set_specular(INOUT(Surface) surface, IN(MaterialSample) material_sam
     if (perfect) {
         const float passes = surface.bsdf.coat_out * surface.bsdf.sheen_out;
         surface.specular = specular_at(surface, mixture, surface.bsdf.glass, direction);
+        if (smooth_face) {
+            // Of half the angle between both directions.
+            const float cosine =
+                sqrt(clamp(0.5f - 0.5f * dot(direction, surface.specular.reflected), 0.0f, 1.0f));
+            const vec3 fresnel = specular_fresnel(surface.bsdf, cosine);
+            surface.specular.reflection += fresnel;
+            surface.rough_fraction = greater_of(surface.rough_fraction - luminance(fresnel), 0.0f);
+        }
         surface.specular.reflection *= passes;
         surface.specular.refraction *= passes;
     }
     if (smooth_coat) {
-        add_smooth_coat(surface, material_sample, mixture, direction);
+        add_smooth_coat(surface, material_sample, perfect, direction);
         surface.rough_fraction *= surface.bsdf.coat_out;
     }
 }
 
-// By the shading normal or the geometric normal, as specular_at.
+// By the normals of specular_at.
 inline void set_shader_specular(INOUT(Surface) surface, IN(Scene) scene, IN(SurfaceShaderLobes) lobes,
                                 vec3 direction) {
     const bool wanted = (scene.features & FeatureSpecular) != 0u && surface.scatters;
     if (!wanted || !is_perfect(lobes.perfect)) return;
     const vec3 up = surface.geometric_normal;
-    Specular specular = perfect_specular(lobes.perfect, direction, surface.frame[2]);
+    Specular specular =
+        perfect_specular(lobes.perfect, direction, mirroring_normal(surface.frame[2], up, direction));
     const float down = -dot(direction, up);
     const bool refracts = largest(specular.refraction) > 0.0f;
     const bool stays = refracts ? dot(specular.refracted, up) < 0.0f
@@ -179,6 +185,36 @@ inline void set_shader_specular(INOUT(Surface) surface, IN(Scene) scene, IN(Surf
     }
     surface.specular = specular;
     surface.rough_fraction = lesser_of(luminance(lobes.left), 0.99999994f);
+}
+
+// What the coat and the sheen let pass of the material's own light, which is below them
+// (KHR_materials_clearcoat, KHR_materials_sheen), along a ray that arrives in `direction`. The same for light
+// that a path hits and for light that is sampled.
+inline float emission_transmittance(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
+                                    IN(Material) material, IN(Triangle) t, uvec3 corners, vec2 b, vec3 face,
+                                    vec3 direction) {
+    if ((scene.features & (FeatureCoat | FeatureSheen)) == 0u || !has_extras(scene, material)) return 1.0f;
+    const MaterialExtras extras = scene.extras.items[material.extras];
+    vec4 texels[4];
+    NO_UNROLL
+    for (uint i = 0u; i < 4u; ++i)
+        texels[i] = texel_or_white(scene, extras.textures[ExtrasCoat + i], mesh, corners, b);
+    float passes = 1.0f;
+    const float coat = extras.coat * texels[0].x;
+    if (coat > 0.0f) {
+        const vec3 mapped =
+            mapped_normal(scene, instance, mesh, extras.coat_normal_texture, extras.coat_normal_scale,
+                          corners, b, vertex_normal(instance, mesh, corners, b, face));
+        const float cosine = abs(dot(seen_normal(mapped, face, direction), direction));
+        passes *= coat_transmittance(scene.energy, coat, extras.coat_roughness * texels[1].y, cosine);
+    }
+    const vec3 sheen = extras.sheen_color * vec3(texels[2]);
+    if (largest(sheen) > 0.0f) {
+        const vec3 normal = shading_normal(scene, instance, mesh, material, t, corners, b, face, direction);
+        passes *= sheen_transmittance(scene.energy, sheen, extras.sheen_roughness * texels[3].w,
+                                      abs(dot(normal, direction)));
+    }
+    return passes;
 }
 
 inline void set_scattering(INOUT(Surface) surface, IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
@@ -215,6 +251,25 @@ inline void set_scattering(INOUT(Surface) surface, IN(Scene) scene, IN(Instance)
     }
 }
 
+// Rays through the surface start at the triangle, and lights are sampled on it: what transmits or emits has no lift.
+inline void lift_surface(INOUT(Surface) surface, IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
+                         IN(Triangle) t, uvec3 corners, vec2 b, bool front) {
+    surface.lift = vec3(0.0f);
+    surface.is_smooth = false;
+    if ((mesh.arrays & MeshNormals) == 0u || !surface.scatters || surface.medium != NoInstance) return;
+    if (material.surface_shader >= 0 || material.transmission > 0.0f || emits(material)) return;
+    const vec3 mean =
+        corner_normal(mesh, corners.x) + corner_normal(mesh, corners.y) + corner_normal(mesh, corners.z);
+    const bool outwards = dot(mean, cross(t.q - t.p, t.r - t.p)) > 0.0f;
+    const vec3 lift = instance.linear * smooth_lift(mesh, t, corners, b, outwards == front ? 1.0f : -1.0f);
+    if (!(dot(lift, surface.geometric_normal) > 0.0f)) return;
+    surface.lift = lift;
+    surface.is_smooth = true;
+    surface.position += lift;
+    // Of this sum and of its inverse, and of the lift itself: 16 roundings.
+    surface.error += rounding_bound(2.0f) * abs(surface.position) + rounding_bound(16.0f) * abs(lift);
+}
+
 inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
                           IN(Hit) hit, vec3 direction, float width, uvec4 containing_media) {
     Surface surface;
@@ -243,11 +298,14 @@ inline Surface surface_of(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
     const vec3 color = vec3(base_color_at(scene, material, mesh, corners, b, footprint));
     surface.albedo = clamp(color, 0.0f, 1.0f);  // vertex colours may exceed 1; albedos may not
     surface.scatters = material.unlit == 0u;
+    lift_surface(surface, instance, mesh, material, triangle, corners, b, front);
     surface.emission = vec3(0.0f);
     if (!surface.scatters) {
         surface.emission = color;
     } else if (emits(material) && (front || material.double_sided != 0u)) {
-        surface.emission = emission_at(scene, material, mesh, corners, b);
+        surface.emission =
+            emission_at(scene, material, mesh, corners, b) *
+            emission_transmittance(scene, instance, mesh, material, triangle, corners, b, face, direction);
     }
     surface.rough_fraction = 1.0f;
     surface.specular = no_specular();
@@ -276,6 +334,8 @@ inline Surface scattering_place(vec3 position, vec3 direction, float anisotropy,
     Surface surface;
     surface.position = position;
     surface.error = vec3(0.0f);
+    surface.lift = vec3(0.0f);
+    surface.is_smooth = false;
     surface.geometric_normal = vec3(0.0f);
     surface.frame = frame_around(-direction);
     surface.albedo = vec3(1.0f);  // absorption is in the path's throughput
@@ -334,13 +394,13 @@ inline Boundary boundary_at(IN(Scene) scene, IN(Hit) hit, vec3 direction, float 
 
 // Whether a ray passes through the hit as if there were no surface: a medium boundary without a surface, or
 // with alpha that lets it pass here (alpha_stops).
-inline bool passes_boundary(IN(Scene) scene, IN(Hit) hit, uint seed) {
+inline bool passes_boundary(IN(Scene) scene, IN(Hit) hit, IN(Sampler) numbers) {
     if ((scene.features & FeatureIndexMatchedMedia) == 0u || !has_medium(scene, hit.instance)) return false;
     if (is_index_matched(scene, hit.instance)) return true;
     if ((scene.features & FeatureAlpha) == 0u) return false;
     return !alpha_stops(scene, scene.materials.items[scene.instances.items[hit.instance].material],
                         scene.meshes.items[scene.instances.items[hit.instance].mesh], hit.instance,
-                        hit.triangle, hit.barycentric, seed);
+                        hit.triangle, hit.barycentric, numbers);
 }
 
 // `direction`: of the ray, unit length; `width`: of the path there (ray_cones.h); `containing_media`: the

@@ -64,7 +64,7 @@ WITH_CONTEXT inline bool leave_vertex(IN(Context) context, INOUT(Path) path, INO
     if (!surface.scatters) return false;
     const bool is_counted = stage == StagePath && !equiangular.is_equiangular;
     const bool is_straight = lobe.kind == LobeRefraction && passes_straight(surface);
-    if (is_counted && !is_straight && !may_scatter(path, context.view.max_scatter_events)) return false;
+    if (is_counted && !is_straight && !may_scatter(path, context.view, lobe.kind != LobeRough)) return false;
     vec3 direction = vec3(0.0f);
     if (lobe.kind == LobeRough) {
         const vec3 wo = to_local(surface, -ray.direction);

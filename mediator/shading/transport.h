@@ -11,14 +11,14 @@
 //
 // The including file defines a Context. It has `scene` (Scene), `view` (View) and `time` (of the sample; all
 // its rays are traced at that time, paths.h), and the functions
-//   bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, IN(Skip) skip, OUT(Hit) hit);
+//   bool trace_closest(IN(Context) context, IN(Ray) ray, IN(Sampler) numbers, IN(Skip) skip, OUT(Hit) hit);
 //       the closest hit that is not skipped; false if there is none. Distances are in
 //       lengths of the direction.
-//   bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed,
+//   bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, IN(Sampler) numbers,
 //                       OUT(bool) meets_walls);
 //       whether anything but a thin wall (is_thin_wall) is hit beyond NearestHit and before `far`, in
 //       multiples of the segment's length; if not, whether a thin wall is
-// both of which call stops_at with this seed for instances that are alpha_tested. GLSL: declared before this
+// both of which call stops_at with these numbers for instances that are alpha_tested. GLSL: declared before this
 // file is included. C++: found in the namespace of the context, as are the functions that log a path when one
 // sample is replayed (probe); they do nothing in shaders.
 //   log_camera(context, ray)                     the camera ray
@@ -65,15 +65,23 @@ struct Lobe {
 };
 
 // Whether a direction leads to the same side of the surface by both normals: up, or down where light goes
-// through.
+// through. On a smooth surface the shading normal decides alone.
 inline bool is_consistent_side(IN(Surface) surface, vec3 direction, vec3 wi) {
     if (is_in_medium(surface)) return true;
+    if (surface.is_smooth) return wi.z > 0.0f;
     const float side = dot(direction, surface.geometric_normal);
     if ((surface.bsdf.lobes & FeatureRoughGlass) != 0u && wi.z < 0.0f) return side < 0.0f;
     return side > 0.0f;
 }
 
+// What is reflected by a smooth surface leaves from above the triangle, all other rays from the triangle.
 inline Ray leaving(IN(Surface) surface, vec3 direction) {
+    if (surface.is_smooth) {
+        const bool reflects = dot(direction, surface.frame[2]) > 0.0f;
+        const vec3 place = reflects ? surface.position : surface.position - surface.lift;
+        const vec3 side = reflects ? surface.geometric_normal : direction;
+        return Ray(leave_surface(place, surface.error, surface.geometric_normal, side), direction);
+    }
     return Ray(leave_surface(surface.position, surface.error, surface.geometric_normal, direction),
                direction);
 }
@@ -83,6 +91,11 @@ inline vec3 diffuse_fraction(IN(BsdfValue) bsdf) {
     return vec3(bsdf.value.x > 0.0f ? bsdf.diffuse.x / bsdf.value.x : 0.0f,
                 bsdf.value.y > 0.0f ? bsdf.diffuse.y / bsdf.value.y : 0.0f,
                 bsdf.value.z > 0.0f ? bsdf.diffuse.z / bsdf.value.z : 0.0f);
+}
+
+// The vertex that the BSDF sample left.
+inline Receiver last_receiver(IN(Path) path) {
+    return Receiver(path.last_position, path.last_normal, vec3(0.0f));
 }
 
 // MIS weight of light that was hit by the BSDF sample; `other`: the density of next event estimation.
@@ -109,7 +122,10 @@ WITH_CONTEXT inline void add_sky(IN(Context) context, INOUT(Path) path, IN(Ray) 
     if (context.scene.environment.emits == 0u) return;
     const Sky sky = sky_at(context.scene, ray.direction);
     connect_light(path.found, context.view, path.probability * sky.radiance);
-    const float weight = weight_by_chance(context.view, path, sky_light_pdf(context.scene, sky));
+    float other = 0.0f;
+    if (path.bsdf_pdf > 0.0f)
+        other = sky_light_pdf(context.scene, context.view.layers, sky, last_receiver(path));
+    const float weight = weight_by_chance(context.view, path, other);
     add_light(path.found, context.view, path.throughput * sky.radiance * weight, path.class_info);
 }
 
@@ -119,8 +135,7 @@ WITH_CONTEXT inline void add_emission(IN(Context) context, INOUT(Path) path, IN(
     connect_light(path.found, context.view, path.probability * surface.emission);
     float other = 0.0f;
     if (path.bsdf_pdf > 0.0f)
-        other = mesh_light_pdf(context.scene, surface,
-                               Receiver(path.last_position, path.last_normal, vec3(0.0f)));
+        other = mesh_light_pdf(context.scene, context.view.layers, surface, last_receiver(path));
     const float weight = weight_by_chance(context.view, path, other);
     add_light(path.found, context.view, path.throughput * surface.emission * weight, path.class_info);
     log_emission(context, surface.emission, ray.direction);
@@ -136,14 +151,14 @@ struct Connection {
     bool distant;    // at infinity; else at distance 1, and
     vec3 target;     // at this place
     PathClassInfo class_info;
-    uint seed;
-    Ray resume;  // the path's next ray, if `resumes`, and its containing media
+    Sampler numbers;  // of the shadow ray
+    Ray resume;       // the path's next ray, if `resumes`, and its containing media
     bool resumes;
     uvec4 containing_media;
 };
 
 inline Connection no_connection() {
-    return Connection(false, vec3(0.0f), vec3(0.0f), false, vec3(0.0f), direct_class_info(), 0u,
+    return Connection(false, vec3(0.0f), vec3(0.0f), false, vec3(0.0f), direct_class_info(), Sampler(0u, 0u),
                       Ray(vec3(0.0f), vec3(0.0f)), false, no_media());
 }
 
@@ -176,8 +191,9 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
     const bool alone = light.delta || context.view.strategy == StrategyLightsOnly;
     float weight = 1.0f, density = light.pdf;
     if ((context.scene.features & FeatureScattering) != 0u && equiangular.is_active) {
-        const EquiangularWeights weights = equiangular_weights(context.scene, context.view.strategy,
-                                                               equiangular, light, receiver_at(surface));
+        const EquiangularWeights weights =
+            equiangular_weights(context.scene, context.view.strategy, equiangular, light,
+                                receiver_at(surface), context.view.layers);
         weight = weights.weight;
         if (equiangular.is_equiangular) {
             // The power heuristic uses the density from the path's own vertex.
@@ -193,14 +209,14 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
     if (!alone) weight *= power_heuristic(density, bsdf.pdf);
     const vec3 origin = leaving(surface, light.direction).origin;
     bool is_open = (context.scene.features & FeatureIndexMatchedMedia) != 0u;
-    const uint seed = shadow_seed(path);
+    const Sampler numbers = shadow_ray_numbers(path);
     // Shadow rays have directions of any length.
     const vec3 segment = light.distant ? light.direction : light.target - origin;
     if (!is_open) {
         const float far = light.distant ? infinity() : 1.0f;
         path.rays += 1u;
         bool meets_walls = false;
-        if (trace_occluded(context, origin, segment, far, seed, meets_walls)) return;
+        if (trace_occluded(context, origin, segment, far, numbers, meets_walls)) return;
         is_open = (context.scene.features & FeatureThinGlass) != 0u && meets_walls;
     }
     vec3 arriving = path.throughput * bsdf.value * light.radiance * (weight / light.pdf);
@@ -214,7 +230,7 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
         media_after(context.scene, path.containing_media, surface, light.direction);
     if (is_open) {
         // Holds the shadow ray until the path's next ray is known (start_connection).
-        connection = Connection(true, arriving, intensity, light.distant, light.target, class_info, seed,
+        connection = Connection(true, arriving, intensity, light.distant, light.target, class_info, numbers,
                                 Ray(origin, segment), false, containing_media);
         return;
     }
@@ -292,7 +308,8 @@ WITH_CONTEXT inline vec3 scatter_specular(IN(Context) context, INOUT(Path) path,
     path.chain.environment = surface.environment;
     path.throughput *= next.weight;
     log_specular(context, reflects, next.direction);
-    if (is_straight) path.walls += 1u;
+    path.walls += is_straight ? 1u : 0u;
+    path.speculars += is_straight ? 0u : 1u;
     if (is_straight && path.bsdf_pdf > 0.0f) return next.direction;
     path.bsdf_pdf = 0.0f;
     if (path.class_info.scatter_count > 0u) path.class_info.scatter_count += 1u;

@@ -139,7 +139,8 @@ struct View {
     std::uint32_t width = 1280, height = 720;  // of the whole picture
     Rect window{0, 0, 1280, 720};              // the part that is rendered (crop)
     std::uint64_t seed = 0;
-    std::uint32_t max_bounces = 8;  // as in Cycles: 0 = direct light only
+    std::uint32_t max_bounces = 8;            // diffuse and glossy ones, and in media; 0 = direct light only
+    std::uint32_t max_specular_bounces = 32;  // perfect reflections and refractions
     PixelFilter pixel_filter;
     Renderer renderer = Renderer::PathTracing;
     PathClass path_class = PathClass::Indirect;
@@ -185,7 +186,8 @@ struct View {
             row(22, "focus_distance", camera(&CameraPose::focus_distance)),
             row(23, "aperture", camera(&CameraPose::aperture)),
             row(24, "camera_motion", camera(&CameraPose::motion), Limit{scene::MaxDecodedMotion}),
-            row(25, "later_channels", channels(1)));
+            row(25, "later_channels", channels(1)),
+            row(26, "max_specular_bounces", &View::max_specular_bounces, InitialWhenAbsent{}));
     }
     const char* malformed() const { return channels.is_known() ? nullptr : "a channel is unknown"; }
 };

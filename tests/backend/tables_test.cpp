@@ -81,7 +81,7 @@ TEST(Tables, NormalsSurviveTinyHugeAndMirroredInstances) {
     }
 }
 
-TEST(Tables, TheTreeAndInfiniteLightsAreChosenByPowerAndATenthUniformly) {
+TEST(Tables, TheTreeAndInfiniteLightsAreWeighedByIrradiance) {
     Stage stage;
     const scene::Material emissive{.emission = glm::vec3(2.0f)};
     const SceneTables tables = stage.make(
@@ -91,30 +91,20 @@ TEST(Tables, TheTreeAndInfiniteLightsAreChosenByPowerAndATenthUniformly) {
          Create{Bulb, scene::Light{.intensity = glm::vec3(3.0f)}},
          Create{Sun, scene::Light{.kind = scene::LightKind::Directional, .intensity = glm::vec3(0.2f)}},
          Create{Sky, scene::Background{.color = glm::vec3(0.5f)}}});
-    ASSERT_EQ(tables.lights.size(), 4u);
+    ASSERT_EQ(tables.lights.size(), 3u);
     EXPECT_EQ(tables.scene.tree_light_count, 2u);
     const shading::LightSource &mesh = tables.lights[0], &bulb = tables.lights[1];
     EXPECT_EQ(mesh.kind, shading::LightMesh);
     EXPECT_EQ(bulb.kind, shading::LightPoint);
     EXPECT_EQ(tables.lights[2].kind, shading::LightDirectional);
-    EXPECT_EQ(tables.lights[3].kind, shading::LightEnvironment);
     EXPECT_EQ(tables.instances[0].light, 0);
     EXPECT_EQ(tables.instances[1].light, -1);
-    EXPECT_EQ(tables.scene.environment_light, 3);
-    // The scene extends from (0, 0) to (2, 6).
-    const double radius2 = (4.0 + 36.0) / 4.0;
-    const std::array powers{8.0 * 2.0 * M_PI + 4.0 * M_PI * 3.0, M_PI * radius2 * 0.2,
-                            4.0 * M_PI * M_PI * radius2 * 0.5};
-    const std::array probabilities{tables.scene.tree_probability, tables.lights[2].probability,
-                                   tables.lights[3].probability};
-    const double total = std::accumulate(powers.begin(), powers.end(), 0.0);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double expected = 0.9 * powers[i] / total + 0.1 / 3.0;
-        EXPECT_NEAR(probabilities[i], expected, 1e-6) << i;
-        sum += expected;
-        EXPECT_NEAR(tables.cdfs[tables.scene.light_cdf + i], sum, 1e-6) << i;
-    }
+    EXPECT_EQ(tables.scene.environment_light, -1) << "an even sky is found by BSDF samples";
+    EXPECT_EQ(tables.scene.environment.emits, 1u);
+    // All of the mesh faces one way: its radiance of 2 times its area of 8.
+    const double scale = tables.scene.tree_scale, tree = (2.0 * 8.0 + 3.0) * scale * scale;
+    EXPECT_NEAR(tables.scene.tree_intensity, tree / (tree + 0.2), 1e-6);
+    EXPECT_NEAR(tables.lights[2].irradiance, 0.2 / (tree + 0.2), 1e-6);
     EXPECT_EQ(tables.scene.features, shading::FeatureMeshLights | shading::FeaturePunctualLights |
                                          shading::FeatureEnvironment | shading::FeatureLightTree);
 }
@@ -252,12 +242,11 @@ TEST(Tables, LayersAndViewsWithHiddenLayersSetTheFeature) {
          Create{Bulb, scene::Light{}}, Create{PaintId, scene::Material{}},
          Create{Emissive, scene::Material{.emission = glm::vec3(2.0f)}},
          Create{Sky, scene::Background{.color = glm::vec3(0.5f)}}});
-    ASSERT_EQ(tables.lights.size(), 3u);
+    ASSERT_EQ(tables.lights.size(), 2u) << "an even sky takes no light samples";
     EXPECT_EQ(tables.instances.at(0).layers, 6u);
     EXPECT_EQ(tables.instances.at(1).layers, 1u);
     EXPECT_EQ(tables.lights[0].layers, 6u) << "the emissive panel";
     EXPECT_EQ(tables.lights[1].layers, 6u) << "the bulb";
-    EXPECT_EQ(tables.lights[2].layers, shading::AllLayers) << "the sky is for all";
     for (const std::uint32_t sees_all : {shading::AllLayers, 3u, 5u}) {
         EXPECT_EQ(features_for(tables, shading::View{.layers = sees_all}), tables.scene.features);
     }
@@ -297,7 +286,7 @@ std::vector<scene::Entry> sky_with_a_map(Stage& stage) {
 }
 
 // Half of a texel's weight is its own luminance, half that of its neighbourhood.
-TEST(Tables, EnvironmentWeightsIncludeNeighbouringTexels) {
+TEST(Tables, EnvironmentWeightsAreTheExcessOfTheMean) {
     Stage stage;
     const SceneTables tables = stage.make(sky_with_a_map(stage));
     const shading::Environment& sky = tables.scene.environment;
@@ -305,12 +294,35 @@ TEST(Tables, EnvironmentWeightsIncludeNeighbouringTexels) {
     EXPECT_EQ(sky.map.wrap_s, shading::WrapRepeat);
     EXPECT_EQ(sky.map.wrap_t, shading::WrapClamp) << "independent of the texture";
     EXPECT_EQ(tables.textures.at(0).wrap_t, shading::WrapMirror);
-    const double left = 0.5 * (2.0 + (2.0 + 2 * 4.0) / 3), right = 0.5 * (4.0 + (4.0 + 2 * 2.0) / 3);
-    EXPECT_NEAR(tables.cdfs[sky.column_cdf], left / (left + right), 1e-6);
+    // Texels of 2 and 4, smoothed 2.67 and 3.33: the mean of 3 is left to BSDF samples.
+    EXPECT_EQ(tables.cdfs[sky.column_cdf], 0.0f);
     EXPECT_EQ(tables.cdfs[sky.column_cdf + 1], 1.0f);
     EXPECT_EQ(tables.cdfs[sky.row_cdf], 1.0f);
+    ASSERT_EQ(tables.scene.environment_light, 0);
+    EXPECT_EQ(tables.lights[0].layers, shading::AllLayers) << "the sky is for all";
+    EXPECT_EQ(tables.lights[0].irradiance, 1.0f) << "there is no other light";
     EXPECT_EQ(tables.scene.features,
               shading::FeatureTextures | shading::FeatureEnvironment | shading::FeatureEnvironmentMap);
+}
+
+// Bilinear filtering spreads a bright texel over its neighbours, which light samples have to find as well.
+TEST(Tables, EnvironmentWeightsIncludeNeighbouringTexels) {
+    Stage stage;
+    std::vector<glm::vec3> texels(8, glm::vec3(0.0f));
+    texels[3] = glm::vec3(80.0f);
+    auto entries = sky_with_a_map(stage);
+    auto& map = std::get<scene::Texture>(std::get<Create>(entries[3]).object);
+    map.width = 8;
+    map.texels = stage.blob(texels);
+    std::get<scene::Background>(std::get<Create>(entries[4]).object).color = glm::vec3(0.0f);
+    const SceneTables tables = stage.make(std::move(entries));
+    const double mean = 10.0, bright = 0.5 * (80.0 + 80.0 / 3) - mean, neighbour = 0.5 * 80.0 / 3 - mean;
+    const double total = bright + 2.0 * neighbour;
+    const float* cdf = &tables.cdfs[tables.scene.environment.column_cdf];
+    EXPECT_EQ(cdf[1], 0.0f);
+    EXPECT_NEAR(cdf[2], neighbour / total, 1e-6);
+    EXPECT_NEAR(cdf[3], (neighbour + bright) / total, 1e-6);
+    EXPECT_EQ(cdf[4], 1.0f);
 }
 
 TEST(Tables, AnIncompleteTextureIsLeftOut) {

@@ -138,13 +138,13 @@ void TracedScene::move(std::uint32_t mesh, const std::vector<glm::vec3>& positio
 
 shading::Hit TracedScene::trace(const TestRay& ray, std::uint32_t question) const {
     return shading::bvh_trace(shading::BvhItems{pool_.data()}, top_place_, ray.origin, ray.direction,
-                              ray.near, ray.far, question, ray.layers, ray.time, ThirdsPass{}, 0);
+                              ray.near, ray.far, question, ray.layers, ray.time, ThirdsPass{}, {});
 }
 
 shading::Hit TracedScene::trace_bvh2(const TestRay& ray, std::uint32_t question) const {
     return shading::bvh2_trace(shading::BvhItems{bvh2_pool_.data()}, bvh2_top_place_, ray.origin,
                                ray.direction, ray.near, ray.far, question, ray.layers, ray.time, ThirdsPass{},
-                               0);
+                               {});
 }
 
 shading::Hit TracedScene::ask_all(const TestRay& ray, std::uint32_t question) const {
@@ -170,7 +170,7 @@ shading::Hit TracedScene::ask_all(const TestRay& ray, std::uint32_t question) co
             if (!crossing.crosses || !(crossing.distance > ray.near)) continue;
             if (!bvh_is_closer(best, crossing.distance, instance.instance, triangle)) continue;
             const Hit hit{instance.instance, triangle, crossing.barycentric, crossing.distance};
-            if ((question & BvhAlpha) == 0 || stops_ray(ThirdsPass{}, hit, 0)) best = hit;
+            if ((question & BvhAlpha) == 0 || stops_ray(ThirdsPass{}, hit, {})) best = hit;
         }
     }
     return best;

@@ -39,7 +39,7 @@ struct TestRay {
 
 // Stops at all but every third triangle: CastSettings{.passes_every = 3}.
 struct ThirdsPass {
-    friend bool stops_ray(const ThirdsPass&, const shading::Hit& candidate, std::uint32_t) {
+    friend bool stops_ray(const ThirdsPass&, const shading::Hit& candidate, const shading::Sampler&) {
         return candidate.triangle % 3 != 0;
     }
 };

@@ -35,8 +35,12 @@ TEST(Cameras, UnknownCameraErrorListsAllAndSuggestsTheNearest) {
 }
 
 TEST(ViewOptions, AreConvertedToAView) {
-    ViewOptions options{
-        .scene = "a.glb", .size = "64x32", .bounces = 3, .pixel_filter = "gaussian", .seed = 9};
+    ViewOptions options{.scene = "a.glb",
+                        .size = "64x32",
+                        .bounces = 3,
+                        .specular_bounces = 5,
+                        .pixel_filter = "gaussian",
+                        .seed = 9};
     options.crop = "8,4,16,8";
     options.background = "0.25,0.5,1";
     const auto plan = parse_options(options);
@@ -44,6 +48,7 @@ TEST(ViewOptions, AreConvertedToAView) {
     EXPECT_EQ(plan->view.width, 64u);
     EXPECT_EQ(plan->view.window, (Rect{8, 4, 16, 8}));
     EXPECT_EQ(plan->view.max_bounces, 3u);
+    EXPECT_EQ(plan->view.max_specular_bounces, 5u);
     EXPECT_EQ(plan->view.seed, 9u);
     EXPECT_EQ(plan->view.pixel_filter.kind, view::PixelFilterKind::Gaussian);
     EXPECT_EQ(plan->import.background, glm::vec3(0.25f, 0.5f, 1.0f));
@@ -55,6 +60,8 @@ TEST(ViewOptions, ErrorsNameTheOption) {
     ViewOptions options{.scene = "a.glb"};
     options.environment_strength = -1.0;
     EXPECT_NE(std::string(parse_options(options).error().what()).find("--env-strength"), std::string::npos);
+    options = {.scene = "a.glb", .environment_rotation = INFINITY};
+    EXPECT_NE(std::string(parse_options(options).error().what()).find("--env-rotation"), std::string::npos);
     options = {.scene = "a.glb", .size = "12"};
     EXPECT_NE(std::string(parse_options(options).error().what()).find("--size"), std::string::npos);
     options = {.scene = "a.glb"};

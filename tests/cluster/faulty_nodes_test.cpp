@@ -6,6 +6,7 @@
 #include <bit>
 #include <limits>
 
+#include "mediator/frame/render_revision.h"
 #include "mediator/frame/resolve.h"
 #include "tests/cluster/cluster_scene.h"
 #include "tests/cluster/hooked_backend.h"
@@ -374,7 +375,8 @@ TEST_F(FaultyNodes, ANullNodeRendersNothingWhileOthersAreConnected) {
     EXPECT_TRUE(std::ranges::all_of(result.film()->plane(0), [](float value) { return value == 0.5f; }));
     ASSERT_EQ(result.summary.nodes.size(), 1u);
     EXPECT_EQ(result.summary.nodes[0].name, "node-2");
-    EXPECT_TRUE(was_logged("node node-1 (kind null-1/r2) takes no part: the null back-end"));
+    EXPECT_TRUE(was_logged("node node-1 (kind " + frame::with_render_revision("null-1") +
+                           ") takes no part: the null back-end"));
     ASSERT_FALSE(result.summary.picture.notes.empty());
     EXPECT_NE(result.summary.picture.notes[0].find("node node-1"), std::string::npos);
     EXPECT_NE(status.nodes.at(0).idle_reason, "");

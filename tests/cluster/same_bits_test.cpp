@@ -167,8 +167,9 @@ TEST(Cluster, ANodeOfAnotherRenderRevisionIsRefused) {
     ASSERT_NE(message, nullptr);
     const auto answer = wire::decode_control(message->bytes);
     ASSERT_TRUE(answer && std::holds_alternative<wire::Refusal>(*answer));
-    EXPECT_NE(std::get<wire::Refusal>(*answer).reason.find("render revision 2, yours is of revision 3"),
-              std::string::npos)
+    const std::string expected = "render revision " + std::to_string(frame::RenderRevision) +
+                                 ", yours is of revision " + std::to_string(frame::RenderRevision + 1);
+    EXPECT_NE(std::get<wire::Refusal>(*answer).reason.find(expected), std::string::npos)
         << std::get<wire::Refusal>(*answer).reason;
 }
 

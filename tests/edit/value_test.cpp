@@ -149,6 +149,7 @@ const std::map<std::string, FieldCase> Cases{
     {"camera.focus_distance", Number},
     {"camera.aperture", {"gaussian", "gaussian", "hexagon"}},
     {"background.visible", {"color", "color", "white"}},
+    {"background.map_center", {"negative_z", "negative_z", "x"}},
     {"background.visible_color", {"0.8 0.1 0.1 0.5", "0.8 0.1 0.1 0.5", "0.8 0.1"}},
 };
 

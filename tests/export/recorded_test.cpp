@@ -28,13 +28,21 @@ scene::Scene rich() {
     return scene;
 }
 
+// As files had it before maps had another direction.
+template <class T>
+scene::Object initial_object() {
+    T object{};
+    if constexpr (std::is_same_v<T, scene::Background>) object.map_center = scene::MapCenter::NegativeZ;
+    return object;
+}
+
 // The same objects with their initial values.
 scene::Scene plain() {
     std::vector<scene::Entry> entries;
     const scene::Scene full = rich();
     for (const auto& [id, object] : full.objects()) {
         entries.push_back(
-            scene::Create{id, std::visit([]<class T>(const T&) { return scene::Object(T{}); }, *object)});
+            scene::Create{id, std::visit([]<class T>(const T&) { return initial_object<T>(); }, *object)});
     }
     scene::Scene scene;
     EXPECT_TRUE(scene.apply_entries(entries));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "mediator/frame/render_revision.h"
 #include "mediator/view/view.h"
 #include "mediator/wire/envelope.h"
 #include "tests/wire/described_values.h"
@@ -125,7 +126,7 @@ void RandomPeer::greet() {
         .peer = settings_.role == net::Role::Node ? wire::PeerKind::Node : wire::PeerKind::Client,
         .name = random_.name(settings_.name)};
     hello.backend = "null";
-    hello.kind = "null-1/r2";
+    hello.kind = frame::with_render_revision("null-1");
     hello.channels = frame::ChannelSet::all();
     hello.concurrent_units = 1 + static_cast<std::uint32_t>(random_.below(wire::MaxConcurrentUnits));
     hello.resume_token = random_.chance(50) ? token_ : 0;
@@ -337,7 +338,7 @@ void RandomPeer::adjust(Message& message) {
     }
     if constexpr (std::is_same_v<Message, wire::Hello>) {
         message.protocol = random_.chance(90) ? wire::ProtocolVersion : message.protocol;
-        message.kind = random_.chance(80) ? "null-1/r2" : message.kind;
+        message.kind = random_.chance(80) ? frame::with_render_revision("null-1") : message.kind;
         message.name = random_.name(settings_.name);
         if (settings_.role == net::Role::Node) message.peer = wire::PeerKind::Node;
         message.resume_token = random_.chance(50) ? token_ : random_.extreme();

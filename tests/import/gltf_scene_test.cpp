@@ -259,7 +259,7 @@ TEST(GltfScene, PunctualLightsAreReadAndCountAsLight) {
     file.set("extensionsUsed", R"(["KHR_lights_punctual"])");
     file.set("extensions", R"({"KHR_lights_punctual":{"lights":[
         {"type":"point","intensity":10,"color":[1,0.5,0]},
-        {"type":"directional","name":"sun","intensity":3},
+        {"type":"directional","name":"sun","intensity":3,"range":5},
         {"type":"spot","intensity":2,"spot":{"innerConeAngle":0.1,"outerConeAngle":0.2}},
         {"type":"spot","name":"broken","intensity":2,"spot":{"innerConeAngle":0.5,"outerConeAngle":0.2}},
         {"type":"point","name":"negative","intensity":-1}]}})");
@@ -270,7 +270,15 @@ TEST(GltfScene, PunctualLightsAreReadAndCountAsLight) {
                               "}}}");
     }
     file.add("scenes", R"({"nodes":[0,1,2,3,4,5,6]})");
+    ImportOptions blender;
+    blender.light_units = LightUnits::Blender;
+    const ImportedScene watts = load(file, blender);
+    EXPECT_FLOAT_EQ(named<scene::Light>(watts, "sun").intensity.x, 3.0f / 683.0f);
+    EXPECT_FLOAT_EQ(named<scene::Light>(watts, "place 0").intensity.y, 5.0f / 683.0f);
+    EXPECT_TRUE(has_notice(watts, "683 lm/W"));
     const ImportedScene scene = load(file);
+    EXPECT_FALSE(has_notice(scene, "683"));
+    EXPECT_TRUE(has_notice(scene, "light 'sun': its range is not used"));
     EXPECT_EQ(scene.counts.lights, 3u);
     const scene::Light& point = named<scene::Light>(scene, "place 0");
     EXPECT_EQ(point.kind, scene::LightKind::Point);

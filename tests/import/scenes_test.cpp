@@ -46,12 +46,15 @@ TEST(Scenes, TheStillLifeIsLitByTheGivenEnvironment) {
     for (const char* name : {"env-studio.exr", "env-sunset.exr", "env-night.exr"}) {
         options.environment = test::scenes_folder() / name;
         options.environment_strength = 2.0f;
+        options.environment_rotation = 0.5f;
         const ImportedScene scene = loaded(test::scenes_folder() / "still.glb", options);
         expect_consistent(scene);
         expect_valid(scene);
         EXPECT_FALSE(has_notice(scene, "default environment"));
         const scene::Background& background = *all<scene::Background>(scene)[0];
         EXPECT_EQ(background.strength, 2.0f);
+        EXPECT_EQ(background.rotation, 0.5f);
+        EXPECT_EQ(background.map_center, scene::MapCenter::PositiveX);
         const auto& map = object<scene::Texture>(scene, background.environment);
         EXPECT_EQ(map.width, 512u);
         EXPECT_EQ(map.height, 256u);

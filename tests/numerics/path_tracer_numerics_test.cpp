@@ -28,7 +28,7 @@ TEST_P(FurnaceAnywhere, IsIndependentOfSizeAndPosition) {
     const Furnace furnace(0.5f, scale, center);
     view::View view;
     view.width = view.height = 32;
-    view.max_bounces = view::UnlimitedBounces;
+    view.max_bounces = view.max_specular_bounces = view::UnlimitedBounces;
     view.camera = view::perspective(glm::translate(glm::dmat4(1.0), center), 1.0, 1.0);
     const PathTracer tracer(furnace.world.tables(), furnace.world.scene(), view);
     double sum = 0, squares = 0, count = 0;

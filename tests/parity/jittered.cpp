@@ -33,20 +33,21 @@ class Jitter {
     CounterRandom random_;
 };
 
-bool trace_closest(const JitteredContext& context, const shading::Ray& ray, std::uint32_t seed,
+bool trace_closest(const JitteredContext& context, const shading::Ray& ray, const shading::Sampler& numbers,
                    const shading::Skip& skip, shading::Hit& hit) {
-    Jitter jitter(seed, ray.origin);
+    Jitter jitter(shading::hash_combine(numbers.seed, numbers.index), ray.origin);
     const embree::Context& exact = context;
-    if (!embree::trace_closest(exact, {ray.origin, jitter(ray.direction)}, seed, skip, hit)) return false;
+    if (!embree::trace_closest(exact, {ray.origin, jitter(ray.direction)}, numbers, skip, hit)) return false;
     hit.barycentric = {jitter(hit.barycentric.x), jitter(hit.barycentric.y)};
     hit.distance = jitter(hit.distance);
     return true;
 }
 
 bool trace_occluded(const JitteredContext& context, const glm::vec3& origin, const glm::vec3& segment,
-                    float far, std::uint32_t seed, bool& meets_walls) {
+                    float far, const shading::Sampler& numbers, bool& meets_walls) {
     const embree::Context& exact = context;
-    return embree::trace_occluded(exact, origin, Jitter(seed, origin)(segment), far, seed, meets_walls);
+    Jitter jitter(shading::hash_combine(numbers.seed, numbers.index), origin);
+    return embree::trace_occluded(exact, origin, jitter(segment), far, numbers, meets_walls);
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ OTHER = {
     "motion": (tessera.translation(1, 2, 3), tessera.translation(4, 5, 6)), "motion_positions": [[0.5] * 9, [0.25] * 9],
     "motion_normals": [b"123456789012"], "depth": 3, "tex_coords_1": b"12345678", "medium": 6, "radius": 0.5, "size": (2.0, 3.0), "angle": 0.25,
     "projection": "orthographic", "orthographic_height": 3.0, "lens_radius": 0.5, "focus_distance": 4.0,
-    "aperture": "gaussian", "visible": "color", "visible_color": (0.5, 0.25, 0.0, 1.0),
+    "aperture": "gaussian", "visible": "color", "map_center": "negative_z", "visible_color": (0.5, 0.25, 0.0, 1.0),
     "transmission_texture": 7, "thickness": 0.25, "attenuation_color": (0.5, 0.25, 0.0), "attenuation_distance": 0.25,
     "specular": 0.25, "specular_texture": 7, "specular_color": (0.5, 0.25, 0.0), "specular_color_texture": 7,
     "clearcoat": 0.25, "clearcoat_texture": 7, "clearcoat_roughness": 0.25, "clearcoat_roughness_texture": 7,

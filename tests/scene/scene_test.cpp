@@ -111,6 +111,12 @@ struct Late {
         return std::tuple(row(1, "size", &Late::size), row(2, "edge", &Late::edge, InitialWhenAbsent{}));
     }
 };
+struct Turned {
+    float size = 2.0f, turn = 0.5f;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "size", &Turned::size), row(2, "turn", &Turned::turn, ZeroWhenAbsent{}));
+    }
+};
 
 template <class T>
 Hash256 hash_of(const T& value) {
@@ -124,6 +130,9 @@ TEST(ObjectHash, OfOlderScenesStaysWhenAFieldIsAdded) {
     EXPECT_EQ(hash_of(Late{.size = 3.0f}), hash_of(Early{.size = 3.0f}));
     EXPECT_NE(hash_of(Late{.edge = 0.0f}), hash_of(Late{}));
     EXPECT_NE(hash_of(Late{.edge = 0.0f}), hash_of(Late{.edge = 1.0f}));
+    EXPECT_EQ(hash_of(Turned{.turn = 0.0f}), hash_of(Early{}));
+    EXPECT_NE(hash_of(Turned{}), hash_of(Early{}));
+    EXPECT_NE(hash_of(Turned{}), hash_of(Turned{.turn = 1.0f}));
 }
 
 TEST(Masks, UseTheFieldNumberMinusOne) {

@@ -73,6 +73,21 @@ inline RoughGlass boundary_of(IN(Inputs) x) {
     return RoughGlass(x.color, is_boundary(eta) ? eta : 1.5f, face.f0, face.f90, vec2(x.alpha, 0.5f),
                       x.d % 2u, x.c % 4u == 0u ? film_of(x) : no_film());
 }
+inline RoughGlass isotropic_boundary_of(IN(Inputs) x) {
+    RoughGlass glass = boundary_of(x);
+    glass.alpha = vec2(x.alpha);
+    return glass;
+}
+inline GlassMultiscatter glass_multiscatter_of(FloatArray energy, IN(Inputs) x) {
+    return glass_multiscatter(energy, isotropic_boundary_of(x), x.roughness, x.wo.z);
+}
+// Differences from 1.
+inline vec4 broad_glass_of(FloatArray energy, IN(Inputs) x) {
+    const GlassValue found =
+        evaluate_glass_multiscatter(energy, isotropic_boundary_of(x), glass_multiscatter_of(energy, x),
+                                    x.roughness, x.c % 2u == 0u ? x.wi : -x.wi);
+    return 1.0f + vec4(found.value, found.pdf);
+}
 inline PerfectPart perfect_of(IN(Inputs) x) {
     return PerfectPart(0.6f * x.color, x.light, vec3(greater_of(x.eta, 0.4f), 1.2f, x.index + 0.1f), x.u.x);
 }

@@ -65,7 +65,7 @@ inline EquiangularWeights equiangular_weights_of(IN(Case) c, IN(Inputs) x) {
     light.emitter = int(x.a % TriangleEmitters);
     light.chance = 0.3f;
     return equiangular_weights(c.context.scene, StrategyBoth + (x.c % 2u) * StrategyEquiangularOnly,
-                               equiangular, light, c.receiver);
+                               equiangular, light, c.receiver, c.context.view.layers);
 }
 inline BoxRay through_box(IN(Case) c, IN(Inputs) x) {
     const BoxRay ray = box_ray(c.instance, medium_of(c, x), c.instance.translation + c.instance.linear * x.wo,

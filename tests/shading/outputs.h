@@ -127,6 +127,15 @@ inline void put(INOUT(Outputs) y, IN(GlassValue) value) {
     put(y, value.value);
     put(y, value.pdf);
 }
+inline void put(INOUT(Outputs) y, IN(GlassPlace) value) {
+    put(y, float(value.row) + vec2(value.between_roughnesses, value.between_indices));
+}
+// Of differences from 1.
+inline void put(INOUT(Outputs) y, IN(GlassMultiscatter) value) {
+    put(y, 1.0f + value.reflected);
+    put(y, 1.0f + value.transmitted);
+    put(y, 1.0f + value.chance);
+}
 inline void put(INOUT(Outputs) y, IN(PerfectPart) value) {
     put(y, value.reflection);
     put(y, value.transmission);
@@ -156,11 +165,13 @@ inline void put(INOUT(Outputs) y, IN(Bsdf) value) {
     put(y, value.f90);
     put(y, vec2(value.base_f0, value.base_f90));
     put(y, vec2(value.dielectric, value.metal));
+    put(y, value.has_facets);
     put(y, value.alpha);
     put(y, value.roughness);
     put(y, value.multiscatter);
     put(y, vec3(value.base_multiscatter, value.multiscatter_out, value.base_out));  // differences from 1
     put(y, value.glass_fraction);
+    if ((value.lobes & FeatureRoughGlass) != 0u) put(y, value.glass_multiscatter);
     put(y, vec3(value.coat_out, value.sheen_out, 1.0f));
     put(y, value.chances);
     if ((value.lobes & (FeatureCoat | FeatureSheen)) != 0u) {

@@ -132,8 +132,8 @@ inline float changing_area(IN(Case) c) {
                         extent_of(max(abs(q), abs(r)));
     return 1.0f + 1.0f / (ratio * ratio);
 }
-// Of a triangle of the first mesh light.
-inline float area_at(IN(Case) c, float time) {
+// From straight above a triangle of the first mesh light.
+inline float hit_pdf_at(IN(Case) c, float time) {
     Emitter emitter = c.emitter;
     emitter.inverse_root_area = 0.0f;
     Surface hit = c.surface;
@@ -142,9 +142,17 @@ inline float area_at(IN(Case) c, float time) {
     for (uint i = 0u; i < LightCount; ++i) {
         if (c.context.scene.lights.items[i].kind != LightMesh) continue;
         hit.light = int(i);
-        return inverse_root_area_at(moving_scene(c), emitter, hit);
+        return hit_triangle_pdf(moving_scene(c), emitter, hit, hit.position + 1000.0f * hit.geometric_normal);
     }
     return 0.0f;
+}
+// Neither thin nor seen from its edge.
+inline TriangleView seen_triangle(IN(Case) c, IN(Inputs) x) {
+    Instance instance = c.instance;
+    instance.linear = mat3(1.0f);
+    instance.translation = x.n;
+    const mat3 frame = frame_around(x.n);
+    return view_triangle(instance, Triangle(vec3(0.0f), 0.5f * frame[0], 0.5f * frame[1]), 1.0f, 0.3f * x.wi);
 }
 inline View moving_view(IN(Case) c) {
     View view = c.context.view;
@@ -193,7 +201,7 @@ inline Surface with_scattering(IN(Case) c) {
 }
 inline Surface coated(IN(Case) c, IN(Inputs) x) {
     Surface surface = c.surface;
-    add_smooth_coat(surface, material_sample_of(x), mixture_of(x), x.n);
+    add_smooth_coat(surface, material_sample_of(x), x.c % 2u == 0u, x.n);
     return surface;
 }
 inline PathSample with_object(IN(Case) c, uint object, float depth) {

@@ -104,6 +104,14 @@ inline void put(INOUT(Outputs) y, IN(QuadView) seen) {
     put(y, 4.0f + seen.solid_angle);
     put(y, 4.0f + seen.before);
 }
+inline void put(INOUT(Outputs) y, IN(TriangleView) seen) {
+    put(y, 4.0f + seen.solid_angle);
+    if (!is_by_solid_angle(seen)) return;
+    put(y, 1.0f + seen.determinant);
+    put(y, seen.to_p);
+    put(y, seen.to_q);
+    put(y, seen.to_r);
+}
 inline void put(INOUT(Outputs) y, IN(LightHit) hit) {
     put(y, hit.is_hit);
     put(y, vec3(hit.distance, 1.0f, 0.0f));  // points are of about that size
@@ -112,6 +120,16 @@ inline void put(INOUT(Outputs) y, IN(LightHit) hit) {
 inline void put(INOUT(Outputs) y, IN(ChosenEmitter) chosen) {
     put(y, chosen.index);
     put(y, chosen.probability);
+}
+inline void put(INOUT(Outputs) y, IN(LightChances) chances) {
+    put(y, chances.tree);
+    put(y, chances.weight);
+    put(y, chances.least);
+}
+inline void put(INOUT(Outputs) y, IN(ChosenLight) chosen) {
+    put(y, chosen.index);
+    put(y, chosen.probability);
+    put(y, 1.0f + chosen.rest);
 }
 inline void put(INOUT(Outputs) y, IN(LightSample) light) {
     put(y, light.intensity);
@@ -146,6 +164,7 @@ inline void put(INOUT(Outputs) y, IN(Path) path) {
     put(y, path.numbers);
     put(y, path.vertex);
     put(y, path.walls);
+    put(y, path.speculars);
     put(y, path.throughput);
     put(y, path.probability);
     put(y, path.bsdf_pdf);

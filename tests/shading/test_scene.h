@@ -17,7 +17,7 @@ struct TestScene {
     ViewArray views;
 };
 
-// The context of this test: hits are determined by the rays' seeds.
+// The context of this test: hits are determined by the rays' numbers.
 struct Context {
     Scene scene;
     View view;
@@ -44,17 +44,18 @@ inline Hit hit_by(IN(Scene) scene, uint bits) {
     return Hit(instance, (bits >> 8) % triangles, weights, 1.0f + unit_float(bits));
 }
 
-inline bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, IN(Skip) skip, OUT(Hit) hit) {
-    const uint bits = hash_u32(seed);
+inline bool trace_closest(IN(Context) context, IN(Ray) ray, IN(Sampler) numbers, IN(Skip) skip,
+                          OUT(Hit) hit) {
+    const uint bits = hash_u32(numbers.index ^ numbers.seed);
     hit = hit_by(context.scene, bits);
     return is_ray(ray.origin, ray.direction) && (bits & 7u) != 0u && !skips(skip, hit.instance, hit.distance);
 }
 
-inline bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed,
+inline bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, IN(Sampler) numbers,
                            OUT(bool) meets_walls) {
-    meets_walls = (hash_u32(seed) & 4u) == 0u;
+    meets_walls = (hash_u32(numbers.index ^ numbers.seed) & 4u) == 0u;
     if (!is_ray(origin, segment) || !(far > 0.0f) || context.scene.instance_count == 0u) return false;
-    return (hash_u32(seed) & 3u) == 0u;
+    return (hash_u32(numbers.index ^ numbers.seed) & 3u) == 0u;
 }
 
 inline bool has_specular_trees(IN(Context) context) {

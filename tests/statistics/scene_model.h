@@ -198,7 +198,7 @@ inline view::View small_view(const glm::dvec3& eye, double vertical_fov, std::ui
     view.width = view.height = size;
     view.window = {0, 0, static_cast<std::int32_t>(size), static_cast<std::int32_t>(size)};
     view.seed = 11;
-    view.max_bounces = view::UnlimitedBounces;
+    view.max_bounces = view.max_specular_bounces = view::UnlimitedBounces;
     view.camera = view::perspective(glm::translate(glm::dmat4(1.0), eye) * turn, vertical_fov, 1.0);
     return view;
 }

@@ -25,7 +25,7 @@ void expect_same(const Mean& a, const Mean& b, const char* what) {
 
 view::View ball_view() {
     view::View view = small_view({0, 0, 6}, 0.5);
-    view.max_bounces = view::UnlimitedBounces;
+    view.max_bounces = view.max_specular_bounces = view::UnlimitedBounces;
     return view;
 }
 

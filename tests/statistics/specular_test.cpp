@@ -139,6 +139,23 @@ INSTANTIATE_TEST_SUITE_P(Indices, GlassFurnace,
                          testing::Combine(testing::Values(1.0f, 1.01f, 1.33f, 1.5f, 2.4f),
                                           testing::Values(Normals::Flat, Normals::Smooth)));
 
+// A frosted body is bounded twice, and light runs around in it: what one boundary loses counts many times.
+TEST(RoughGlass, AFrostedSphereVanishesToo) {
+    for (const float roughness : {0.3f, 0.6f, 1.0f}) {
+        Model model;
+        scene::Material frosted = glass(1.5f);
+        frosted.roughness = roughness;
+        model.sphere(model.material(frosted), {0.0, 0.0, -3.0}, 1.0, Normals::Flat);
+        model.sky(glm::vec3(1.0f));
+        // The sphere alone: it covers the picture.
+        view::View view = small_view({}, 0.3, 256);
+        const Mean mean = mean_of(model.build(), view, 64, red);
+        EXPECT_LE(mean.value, 1.003 + 4.0 * mean.standard_error) << roughness;
+        EXPECT_GE(mean.value, 0.99 - 4.0 * mean.standard_error) << roughness;
+        EXPECT_LT(mean.standard_error, 2e-3) << roughness;
+    }
+}
+
 TEST(Mirror, AWhiteBallVanishesToo) {
     for (const Normals normals : {Normals::Flat, Normals::Smooth}) {
         Model model;
@@ -230,6 +247,89 @@ TEST(Mirror, PathsInAClosedMirrorTerminate) {
     SceneAdapter& world = model.build();
     for_samples(world, small_view({}, 1.0, 4), 1,
                 [&](const PathSample& sample) { EXPECT_EQ(radiance_of(sample), glm::vec3(0.0f)); });
+}
+
+// Nine balls of glass, one behind the other, in a white sky: 18 boundaries on the way of each path through all.
+TEST(SpecularBounces, HaveALimitOfTheirOwn) {
+    Model model;
+    model.sky(glm::vec3(1.0f));
+    const ObjectId clear = model.material(glass(1.5f));
+    for (int i = 0; i < 9; ++i) model.sphere(clear, {0.0, 0.0, -2.5 * i}, 1.0, Normals::Smooth, 64);
+    const SceneAdapter& world = model.build();
+    view::View view = small_view({0.0, 0.0, 3.0}, 1e-3, 8);
+    view.max_bounces = view::View().max_bounces;
+    view.max_specular_bounces = view::View().max_specular_bounces;
+    EXPECT_GT(mean_of(world, view, 64, red).value, 0.9) << "all but what is reflected to and fro";
+    view.max_specular_bounces = 8;
+    EXPECT_LT(mean_of(world, view, 64, red).value, 0.75) << "what is reflected before";
+    view.max_specular_bounces = 0;
+    EXPECT_EQ(mean_of(world, view, 4, red).value, 0.0);
+}
+
+// A limit of diffuse bounces does not end reflections, and those do not lengthen diffuse paths.
+TEST(SpecularBounces, DoNotCountAsOthers) {
+    Model model;
+    model.floor(model.material(mirror(glm::vec3(1.0f))), 10.0f, 0.0f);
+    model.floor(model.material(chalk(glm::vec3(0.5f))), -10.0f, 4.0f);
+    model.point_light({0.0, 0.0, 2.0}, 10.0f);
+    const SceneAdapter& world = model.build();
+    // Down into the mirror, up to the ceiling, which the lamp lights.
+    view::View view = small_view({0.3, 0.0, 1.0}, 1e-3, 8);
+    view.max_bounces = 0;
+    const Mean direct = mean_of(world, view, 16, red);
+    const double distance2 = 4.0 + 0.09, cosine = 2.0 / std::sqrt(distance2);
+    EXPECT_NEAR(direct.value, 0.5 / M_PI * 10.0 * cosine / distance2, 2e-3);
+}
+
+// ---- smooth plastic: a mirror over a diffuse base ----
+
+scene::Material plastic(float roughness, float albedo) {
+    return {.base_color = glm::vec4(glm::vec3(albedo), 1.0f), .metallic = 0.0f, .roughness = roughness};
+}
+
+// Black underneath: the sky, by Schlick's approximation, without noise.
+TEST(SmoothPlastic, ReflectsAsAMirror) {
+    for (const double angle : {0.0, 0.6, 1.2, 1.5}) {
+        Model model;
+        model.sky(glm::vec3(1.0f));
+        model.floor(model.material(plastic(0.0f, 0.0f)), 100.0f, 0.0f);
+        const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), angle, {1.0, 0.0, 0.0});
+        const view::View view = small_view(glm::dvec3(turn * glm::dvec4(0.0, 0.0, 2.0, 1.0)), 1e-4, 4, turn);
+        const double expected = 0.04 + 0.96 * std::pow(1.0 - std::cos(angle), 5.0);
+        const Mean found = mean_of(model.build(), view, 4, red);
+        EXPECT_NEAR(found.value, expected, 1e-3 * expected + 1e-5) << angle;
+        EXPECT_LT(found.standard_error, 1e-3 * expected + 1e-6);
+    }
+}
+
+// As bright as almost smooth plastic, and white in a white furnace.
+TEST(SmoothPlastic, HasTheEnergyOfAlmostSmoothPlastic) {
+    const auto brightness = [](float roughness, float albedo) {
+        Model model;
+        model.sky(glm::vec3(1.0f));
+        model.sphere(model.material(plastic(roughness, albedo)), {}, 1.0, Normals::Smooth, 64);
+        return mean_of(model.build(), small_view({0.0, 0.0, 3.0}, 0.3), 256, red).value;
+    };
+    EXPECT_NEAR(brightness(0.0f, 1.0f), 1.0, 0.003);
+    EXPECT_NEAR(brightness(0.0f, 0.5f), brightness(0.02f, 0.5f), 0.003);
+}
+
+// A lobe of a hundredth of a degree that diffuse paths run into would make single samples of up to 1e5 times the mean.
+TEST(SmoothPlastic, MakesNoFirefliesUnderAPointLight) {
+    Model model;
+    model.floor(model.material(chalk(glm::vec3(0.8f))), 3.0f, 0.0f);
+    model.sphere(model.material(plastic(0.0f, 0.8f)), {0.0, 0.0, 0.5}, 0.5, Normals::Smooth, 64);
+    model.point_light({1.0, 0.0, 2.0}, 10.0f);
+    const SceneAdapter& world = model.build();
+    const view::View view =
+        small_view({0.0, -3.0, 2.0}, 0.9, 32, glm::rotate(glm::dmat4(1.0), 1.0, {1.0, 0.0, 0.0}));
+    double most = 0.0, sum = 0.0, count = 0.0;
+    for_samples(world, view, 256, [&](const PathSample& sample) {
+        most = std::max(most, red(sample));
+        sum += red(sample);
+        ++count;
+    });
+    EXPECT_LT(most, 30.0 * sum / count);
 }
 
 }  // namespace

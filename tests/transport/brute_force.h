@@ -52,14 +52,14 @@ inline bool meets(IN(Instance) instance, IN(Triangle) t, vec3 origin, vec3 direc
 }
 
 inline bool trace_instance(IN(Context) context, uint index, IN(Instance) instance, IN(Mesh) mesh, vec3 origin,
-                           vec3 direction, uint seed, IN(Skip) skip, INOUT(Hit) nearest) {
+                           vec3 direction, IN(Sampler) numbers, IN(Skip) skip, INOUT(Hit) nearest) {
     bool found = false;
     for (uint i = 0u; i < mesh.triangle_count; ++i) {
         Hit hit = nearest;
         if (!meets(instance, triangle_of(mesh, mesh.triangles.items[i]), origin, direction, skip.near, hit))
             continue;
         if (skips(skip, index, hit.distance)) continue;
-        if (instance.alpha_tested != 0u && !stops_at(context.scene, index, i, hit.barycentric, seed))
+        if (instance.alpha_tested != 0u && !stops_at(context.scene, index, i, hit.barycentric, numbers))
             continue;
         nearest = hit;
         nearest.instance = index;
@@ -69,29 +69,30 @@ inline bool trace_instance(IN(Context) context, uint index, IN(Instance) instanc
     return found;
 }
 
-inline bool trace_all(IN(Context) context, vec3 origin, vec3 direction, float far, uint seed, IN(Skip) skip,
-                      OUT(Hit) hit) {
+inline bool trace_all(IN(Context) context, vec3 origin, vec3 direction, float far, IN(Sampler) numbers,
+                      IN(Skip) skip, OUT(Hit) hit) {
     bool found = false;
     hit = Hit(0u, 0u, vec2(0.0f), far);
     for (uint i = 0u; i < context.scene.instance_count; ++i) {
         const uint mesh = context.scene.instances.items[i].mesh;
         if (trace_instance(context, i, context.scene.instances.items[i], context.scene.meshes.items[mesh],
-                           origin, direction, seed, skip, hit)) {
+                           origin, direction, numbers, skip, hit)) {
             found = true;
         }
     }
     return found;
 }
 
-inline bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, IN(Skip) skip, OUT(Hit) hit) {
-    return trace_all(context, ray.origin, ray.direction, infinity(), seed, skip, hit);
+inline bool trace_closest(IN(Context) context, IN(Ray) ray, IN(Sampler) numbers, IN(Skip) skip,
+                          OUT(Hit) hit) {
+    return trace_all(context, ray.origin, ray.direction, infinity(), numbers, skip, hit);
 }
 
-inline bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed,
+inline bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, IN(Sampler) numbers,
                            OUT(bool) meets_walls) {
     meets_walls = false;
     Hit hit;
-    return trace_all(context, origin, segment, far, seed, skip_nothing(), hit);
+    return trace_all(context, origin, segment, far, numbers, skip_nothing(), hit);
 }
 
 SHADING_END

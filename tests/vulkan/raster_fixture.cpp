@@ -167,8 +167,8 @@ std::vector<RasterTest::Seen> RasterTest::seen_by_rays(const view::View& view, s
         for (std::uint32_t x = 0; x < view.width; ++x) {
             const shading::Ray ray = shading::camera_ray(record, x, y, shading::raster_place(record, index));
             const shading::BvhRay from_eye = shading::bvh_ray(glm::vec3(0.0f), ray.direction);
-            const std::uint32_t seed =
-                shading::closest_seed(shading::start_path(shading::make_sampler(x, y, record.seed, index)));
+            const shading::Sampler numbers = shading::path_ray_numbers(
+                shading::start_path(shading::make_sampler(x, y, record.seed, index)));
             Seen seen;
             float nearest = shading::infinity();
             for (std::uint32_t i = 0; i < scene.instance_count; ++i) {
@@ -183,7 +183,7 @@ std::vector<RasterTest::Seen> RasterTest::seen_by_rays(const view::View& view, s
                     if (!crossing.crosses || !(crossing.distance > 0.0f && crossing.distance < nearest))
                         continue;
                     const bool stops = instance.alpha_tested == 0 ||
-                                       shading::stops_at(scene, i, t, crossing.barycentric, seed);
+                                       shading::stops_at(scene, i, t, crossing.barycentric, numbers);
                     if (!stops) continue;
                     nearest = crossing.distance;
                     seen = {instance.object, shading::depth_along(record, ray, nearest)};

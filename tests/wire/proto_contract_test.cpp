@@ -79,5 +79,22 @@ TEST(LaterRows, HaveTheirDefaultValueWhenAbsent) {
     EXPECT_EQ(from_bytes<Early>(to_bytes(Late{.size = 3.0f}))->size, 3.0f) << "older readers skip it";
 }
 
+struct OlderBackground {
+    float rotation = 0.25f;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(5, "rotation", &OlderBackground::rotation));
+    }
+};
+
+// Backgrounds of older versions keep their look: the middle of their map is -z.
+TEST(LaterRows, HaveTheOldMeaningWhenAbsent) {
+    const auto read = from_bytes<scene::Background>(to_bytes(OlderBackground{}));
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->rotation, 0.25f);
+    EXPECT_EQ(read->map_center, scene::MapCenter::NegativeZ);
+    EXPECT_EQ(from_bytes<scene::Background>(to_bytes(scene::Background{}))->map_center,
+              scene::MapCenter::PositiveX);
+}
+
 }  // namespace
 }  // namespace tessera::wire::test

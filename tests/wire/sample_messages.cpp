@@ -34,7 +34,11 @@ scene::ChangeList some_changes() {
 }
 
 view::View some_view() {
-    view::View view{.id = ViewId{3}, .revision = 9, .seed = 77, .max_bounces = view::UnlimitedBounces};
+    view::View view{.id = ViewId{3},
+                    .revision = 9,
+                    .seed = 77,
+                    .max_bounces = view::UnlimitedBounces,
+                    .max_specular_bounces = 7};
     view.camera.left = -0.25;
     view.camera.world_from_camera[3][0] = 1e6;
     view.camera.projection = scene::Projection::Orthographic;

@@ -39,7 +39,7 @@ layout(push_constant, scalar) uniform Arguments {
 };
 
 // Instead of a texture's alpha.
-bool stops_ray(IN(Context) context, IN(Hit) candidate, uint seed) {
+bool stops_ray(IN(Context) context, IN(Hit) candidate, IN(Sampler) numbers) {
     return PassesEvery == 0u || candidate.triangle % PassesEvery != 0u;
 }
 
@@ -63,14 +63,14 @@ void main() {
 #if defined(BVH2)
     const RayQuery ray = rays.items[at];
     hits.items[at] =
-        bvh2_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, AllLayers, 0.0f, context, 0u);
+        bvh2_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, AllLayers, 0.0f, context, Sampler(0u, 0u));
 #elif defined(TEXELS)
     const RayQuery ray = asked_ray(at);
     bound_hits[at] =
-        bvh_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, AllLayers, 0.0f, context, 0u);
+        bvh_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, AllLayers, 0.0f, context, Sampler(0u, 0u));
 #else
     const RayQuery ray = rays.items[at];
     hits.items[at] =
-        bvh_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, AllLayers, 0.0f, context, 0u);
+        bvh_trace(pool, top, ray.origin, ray.direction, ray.near, ray.far, Question, AllLayers, 0.0f, context, Sampler(0u, 0u));
 #endif
 }

@@ -40,13 +40,13 @@ struct Context {
 // Whether the current ray to a light has met thin walls, which do not stop it.
 bool wall_is_met = false;
 
-bool stops_ray(IN(Context) context, IN(Hit) candidate, uint seed) {
+bool stops_ray(IN(Context) context, IN(Hit) candidate, IN(Sampler) numbers) {
     if ((Features & FeatureThinGlass) != 0u && context.connects && is_thin_wall(context.scene, candidate.instance)) {
         wall_is_met = true;
         return false;
     }
     if ((Features & FeatureIndexMatchedMedia) != 0u && skips(context.skip, candidate.instance, candidate.distance)) return false;
-    return stops_at(context.scene, candidate.instance, candidate.triangle, candidate.barycentric, seed);
+    return stops_at(context.scene, candidate.instance, candidate.triangle, candidate.barycentric, numbers);
 }
 
 uint scene_question() {
@@ -57,20 +57,20 @@ uint seen_layers(IN(Context) context) {
     return (Features & FeatureLayers) != 0u ? context.view.layers : AllLayers;
 }
 
-bool trace_closest(IN(Context) context, IN(Ray) ray, uint seed, IN(Skip) skip, OUT(Hit) hit) {
+bool trace_closest(IN(Context) context, IN(Ray) ray, IN(Sampler) numbers, IN(Skip) skip, OUT(Hit) hit) {
     Context asked = context;
     asked.skip = skip;
     hit = find_hit(BvhItems(context.pool), context.top, ray.origin, ray.direction, skip.near, infinity(),
-                    BvhClosest | scene_question(), seen_layers(context), context.time, asked, seed);
+                    BvhClosest | scene_question(), seen_layers(context), context.time, asked, numbers);
     return hit.instance != NoInstance;
 }
 
-bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, uint seed, OUT(bool) meets_walls) {
+bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, IN(Sampler) numbers, OUT(bool) meets_walls) {
     Context asked = context;
     asked.connects = true;
     wall_is_met = false;
     const bool is_hit = find_hit(BvhItems(context.pool), context.top, origin, segment, NearestHit, far,
-                                 BvhAny | scene_question(), seen_layers(context), context.time, asked, seed)
+                                 BvhAny | scene_question(), seen_layers(context), context.time, asked, numbers)
                             .instance != NoInstance;
     meets_walls = wall_is_met;
     return is_hit;

@@ -8,6 +8,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <numbers>
+#include <vector>
 
 #include "mediator/shading/energy.h"
 #include "mediator/shading/microfacets.h"
@@ -76,6 +77,45 @@ dvec2 mean_ggx_energy(double alpha, int cosines, int points) {
     return sum;
 }
 
+// Fresnel's equations; 1 at total reflection.
+double reflectance(double cosine, double eta) {
+    const double inside2 = 1.0 - (1.0 - cosine * cosine) / (eta * eta);
+    if (!(inside2 > 0.0)) return 1.0;
+    const double inside = std::sqrt(inside2);
+    const double parallel = (eta * cosine - inside) / (eta * cosine + inside);
+    const double across = (cosine - eta * inside) / (cosine + eta * inside);
+    return 0.5 * (parallel * parallel + across * across);
+}
+
+// As glass_energy of energy.h.
+dvec3 glass_energy(double cosine, double alpha, double eta, int points) {
+    const dvec3 wo = direction(std::max(cosine, Grazing));
+    const double lambda_out = ggx_lambda(wo, alpha);
+    const auto masking = [&](double z) {
+        return (1.0 + lambda_out) / (1.0 + lambda_out + ggx_lambda(direction(z), alpha));
+    };
+    const double amplitude = (1.0 - eta) / (1.0 + eta), start = amplitude * amplitude;
+    dvec3 sum(0.0);
+    for (int i = 0; i < points; ++i) {
+        for (int j = 0; j < points; ++j) {
+            const dvec3 h = visible_normal(wo, alpha, midpoint(i, points), midpoint(j, points));
+            const double out_h = std::min(glm::dot(wo, h), 1.0);
+            const double up = 2.0 * out_h * h.z - wo.z;
+            const double reflects = up > 0.0 ? masking(up) : 0.0;
+            const double inside2 = 1.0 - (1.0 - out_h * out_h) / (eta * eta);
+            if (!(inside2 > 0.0)) {
+                sum.x += reflects;
+                continue;
+            }
+            const double down = std::sqrt(inside2) * h.z - (out_h * h.z - wo.z) / eta;
+            const double passes = down > 0.0 ? masking(std::min(down, 1.0)) : 0.0;
+            const double rise = std::max(0.0, (reflectance(out_h, eta) - start) / (1.0 - start));
+            sum += dvec3(passes, reflects - passes, rise * (reflects - passes));
+        }
+    }
+    return sum / double(points * points);
+}
+
 double sheen_lambda_fit(double x, double t) {
     const auto between = [t](double rough, double smooth) { return rough + (smooth - rough) * t; };
     return between(21.5473, 25.3245) /
@@ -125,6 +165,46 @@ double ggx_alpha(double roughness) {
     return std::max(roughness * roughness, double(tessera::shading::MinAlpha));
 }
 
+// For each side, index and roughness of the tables of glass. An infinite index: one of 10,000.
+template <class Value>
+void for_each_glass(const Value& value) {
+    using tessera::shading::GlassIndices, tessera::shading::GlassRoughnesses;
+    for (unsigned side = 0; side < 2; ++side) {
+        for (unsigned layer = 0; layer < GlassIndices; ++layer) {
+            const double critical = layer / double(GlassIndices - 1);
+            const double ratio = std::max(std::sqrt(1.0 - critical * critical), 1e-4);
+            for (unsigned row = 0; row < GlassRoughnesses; ++row) {
+                value(side == 0 ? 1.0 / ratio : ratio,
+                      std::pow(row / double(GlassRoughnesses - 1), 2.0 / 3.0));
+            }
+        }
+    }
+}
+
+std::vector<dvec3> glass_row(double eta, double roughness) {
+    std::vector<dvec3> row;
+    for (unsigned column = 0; column < tessera::shading::GlassDirections; ++column) {
+        const double root = root_of_cosine(column / double(tessera::shading::GlassDirections - 1), roughness);
+        row.push_back(glass_energy(root * root, ggx_alpha(roughness), eta, 64));
+    }
+    return row;
+}
+
+// Weighted by the cosine, of the row as it is interpolated: what multiple scattering gives back is then what it takes.
+dvec3 mean_of_row(const std::vector<dvec3>& row, double roughness) {
+    constexpr int Cosines = 1024;
+    dvec3 sum(0.0);
+    for (int i = 0; i < Cosines; ++i) {
+        const double cosine = midpoint(i, Cosines), root = std::sqrt(cosine);
+        const double direction = root * (1.0 + roughness) / (root + roughness);
+        const double place = direction * double(row.size() - 1);
+        const auto column = std::min(static_cast<std::size_t>(place), row.size() - 2);
+        const dvec3 energy = row[column] + (row[column + 1] - row[column]) * (place - double(column));
+        sum += 2.0 * cosine * energy / double(Cosines);
+    }
+    return sum;
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -156,6 +236,18 @@ int main(int count, char** arguments) {
         const double r = std::max(roughness, double(tessera::shading::MinSheenRoughness));
         put(sheen_energy(root * root, r * r, 256));
     });
+    const auto put_three = [&](const dvec3& values) {
+        put(values.x);
+        put(values.y);
+        put(values.z);
+    };
+    std::vector<dvec3> means;
+    for_each_glass([&](double eta, double roughness) {
+        const std::vector<dvec3> row = glass_row(eta, roughness);
+        for (const dvec3& energy : row) put_three(energy);
+        means.push_back(mean_of_row(row, roughness));
+    });
+    for (const dvec3& energy : means) put_three(energy);
     std::fputs("};\nreturn Numbers;\n}\n}  // namespace tessera::backend\n", file);
     return std::fclose(file) == 0 ? 0 : 1;
 }

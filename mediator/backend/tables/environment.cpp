@@ -32,9 +32,15 @@ std::vector<double> texel_luminances(const SceneTables& tables) {
     return texels;
 }
 
-// The weight of a texel is the mean of its own luminance and that of its neighbourhood, so that all bilinearly
-// filtered values can be sampled. Returns the mean luminance over the sphere.
-double add_map_cdfs(SceneTables& tables) {
+struct SkyMeans {
+    double luminance = 0.0;  // over the sphere
+    double excess = 0.0;     // of what light samples are to find: the luminance above its mean
+};
+
+// MIS compensation (Karlik et al. 2019): BSDF samples find the mean of the sky as well as light samples do, and need no shadow
+// ray, so light samples go where it is brighter. The weight of a texel is the excess of the mean of its own luminance and that
+// of its neighbourhood: a texel with a bright neighbour has a part of its light by bilinear filtering.
+SkyMeans add_map_cdfs(SceneTables& tables) {
     shading::Environment& sky = tables.scene.environment;
     const std::int64_t width = sky.map.width, height = sky.map.height;
     const std::vector<double> texels = texel_luminances(tables);
@@ -42,25 +48,44 @@ double add_map_cdfs(SceneTables& tables) {
         return texels[static_cast<std::size_t>(std::clamp<std::int64_t>(y, 0, height - 1) * width +
                                                (x + width) % width)];
     };
-    std::vector<double> row_weights(static_cast<std::size_t>(height));
-    double sphere = 0.0;
-    sky.column_cdf = static_cast<std::uint32_t>(tables.cdfs.size());
-    for (std::int64_t y = 0; y < height; ++y) {
-        const double sine = std::sin(pi * (double(y) + 0.5) / double(height));
-        std::vector<double> weights(static_cast<std::size_t>(width));
-        for (std::int64_t x = 0; x < width; ++x) {
-            double neighbours = 0.0;
-            for (std::int64_t dy = -1; dy <= 1; ++dy) {
-                for (std::int64_t dx = -1; dx <= 1; ++dx) neighbours += texel(x + dx, y + dy) / 9.0;
-            }
-            weights[static_cast<std::size_t>(x)] = 0.5 * (texel(x, y) + neighbours);
-            row_weights[static_cast<std::size_t>(y)] += weights[static_cast<std::size_t>(x)] * sine;
-            sphere += texel(x, y) * sine;
+    const auto smoothed = [&](std::int64_t x, std::int64_t y) {
+        double neighbours = 0.0;
+        for (std::int64_t dy = -1; dy <= 1; ++dy) {
+            for (std::int64_t dx = -1; dx <= 1; ++dx) neighbours += texel(x + dx, y + dy) / 9.0;
         }
+        return 0.5 * (texel(x, y) + neighbours);
+    };
+    std::vector<double> shares(static_cast<std::size_t>(height));  // of one texel in the sphere, by row
+    double sines = 0.0;
+    for (std::int64_t y = 0; y < height; ++y) {
+        double& share = shares[static_cast<std::size_t>(y)];
+        share = std::sin(pi * (double(y) + 0.5) / double(height));
+        sines += share;
+    }
+    for (double& share : shares) share /= sines * double(width);
+    SkyMeans means;
+    for (std::int64_t y = 0; y < height; ++y) {
+        for (std::int64_t x = 0; x < width; ++x)
+            means.luminance += texel(x, y) * shares[static_cast<std::size_t>(y)];
+    }
+    std::vector<double> row_weights(static_cast<std::size_t>(height));
+    std::vector<double> weights(static_cast<std::size_t>(width));
+    sky.column_cdf = static_cast<std::uint32_t>(tables.cdfs.size());
+    // A difference below this is rounding: the sky is uniform.
+    const double least = 1e-5 * means.luminance;
+    for (std::int64_t y = 0; y < height; ++y) {
+        double row = 0.0;
+        for (std::int64_t x = 0; x < width; ++x) {
+            const double excess = smoothed(x, y) - means.luminance;
+            weights[static_cast<std::size_t>(x)] = excess > least ? excess : 0.0;
+            row += weights[static_cast<std::size_t>(x)];
+        }
+        row_weights[static_cast<std::size_t>(y)] = row * shares[static_cast<std::size_t>(y)];
+        means.excess += row_weights[static_cast<std::size_t>(y)];
         add_cdf(tables, weights);
     }
     sky.row_cdf = add_cdf(tables, row_weights);
-    return sphere * pi / (2.0 * double(width) * double(height));
+    return means;
 }
 
 }  // namespace
@@ -84,22 +109,23 @@ double add_environment(SceneTables& tables, const scene::Scene& scene, const Ind
     shading::Environment& sky = tables.scene.environment;
     sky.color = background->color;
     sky.strength = background->strength;
-    sky.rotation = background->rotation;
+    const bool is_turned = background->map_center == scene::MapCenter::PositiveX;
+    sky.rotation = static_cast<float>(double(background->rotation) - (is_turned ? 0.5 * pi : 0.0));
     sky.visible_color = background->visible_color;
     sky.shows_color = background->visible == scene::VisibleBackground::Color ? 1u : 0u;
-    double mean = shading::luminance(sky.color);
+    SkyMeans means{.luminance = double(shading::luminance(sky.color))};
     const auto map = textures.find(background->environment);
     if (map != textures.end() && sky.strength > 0.0f) {
         sky.map = tables.textures[map->second];
         sky.map.wrap_s = shading::WrapRepeat;
         sky.map.wrap_t = shading::WrapClamp;
         tables.environment_texels = tables.texels[map->second];
-        mean = add_map_cdfs(tables);
+        means = add_map_cdfs(tables);
         tables.scene.features |= shading::FeatureEnvironmentMap;
     }
-    sky.emits = mean > 0.0 ? 1u : 0u;
-    if (mean > 0.0) tables.scene.features |= shading::FeatureEnvironment;
-    return mean;
+    sky.emits = means.luminance > 0.0 ? 1u : 0u;
+    if (means.luminance > 0.0) tables.scene.features |= shading::FeatureEnvironment;
+    return means.excess;
 }
 
 }  // namespace tessera::backend

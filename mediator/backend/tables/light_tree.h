@@ -15,6 +15,7 @@ struct LightLeaf {
     double spread = 0.0;          // half angle of that cone; pi: all directions, any axis
     double emission_angle = 0.0;  // maximum angle between a normal and the directions it emits to
     double power = 0.0;           // finite, more than 0
+    double intensity = 0.0;       // along its axis: its irradiance times the squared distance
     std::uint32_t emitter = 0;    // index
     bool is_area = false;         // a sphere or quad, which rays can hit
     bool two_sided = false;       // also emits along -axis

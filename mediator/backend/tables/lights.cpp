@@ -14,14 +14,14 @@ namespace {
 using shading::luminance;
 using std::numbers::pi;
 
-// Infinite lights (directional, environment) and their power.
+// Infinite lights (directional, environment) and the irradiance of each on a surface that faces it.
 struct DistantLights {
     std::vector<shading::LightSource> lights;
-    std::vector<double> powers;
+    std::vector<double> irradiances;
 
-    void add(const shading::LightSource& light, double power) {
+    void add(const shading::LightSource& light, double irradiance) {
         lights.push_back(light);
-        powers.push_back(power);
+        irradiances.push_back(irradiance);
     }
 };
 
@@ -106,6 +106,7 @@ void add_local_light(SceneTables& tables, EmitterList& list, const scene::Light&
                    .spread = pi,
                    .emission_angle = 0.5 * pi,
                    .power = 4.0 * pi * luminance(light.intensity),
+                   .intensity = luminance(light.intensity),
                    .emitter = static_cast<std::uint32_t>(list.emitters.size())};
     light.kind = shading::LightPoint;
     float inverse_root_area = 0.0f;
@@ -136,7 +137,7 @@ void make_sun_disk(SceneTables& tables, shading::LightSource& light, double angl
 }
 
 void add_placed_lights(SceneTables& tables, const scene::Scene& scene, const FlatScene& flat_scene,
-                       double radius, EmitterList& list, DistantLights& distant) {
+                       EmitterList& list, DistantLights& distant) {
     for (const PlacedLight& placed : flat_scene.lights) {
         const auto& source = *scene.find_as<scene::Light>(placed.light);
         const glm::dmat3 turn(placed.world_from_light);
@@ -153,7 +154,7 @@ void add_placed_lights(SceneTables& tables, const scene::Scene& scene, const Fla
         if (source.kind == scene::LightKind::Directional) {
             light.kind = shading::LightDirectional;
             make_sun_disk(tables, light, source.angle);
-            distant.add(light, pi * radius * radius * brightness);
+            distant.add(light, brightness);
         } else {
             add_local_light(tables, list, source, light, turn[1]);
         }
@@ -171,49 +172,56 @@ void add_tree(SceneTables& tables, EmitterList& list) {
     if (list.leaves.size() > 1) tables.scene.features |= shading::FeatureLightTree;
 }
 
-void assign_probabilities(SceneTables& tables, const EmitterList& list, const DistantLights& distant) {
-    double tree_power = 0.0;
-    for (const LightLeaf& leaf : list.leaves) tree_power += leaf.power;
-    double total = tree_power, sum = 0.0;
-    for (const double power : distant.powers) total += power;
-    const bool has_tree = !list.leaves.empty();
-    constexpr double UniformFraction = 0.1;
-    const double uniform = 1.0 / (static_cast<double>(distant.lights.size()) + (has_tree ? 1.0 : 0.0));
-    tables.scene.light_cdf = static_cast<std::uint32_t>(tables.cdfs.size());
-    const auto assign = [&](double power) {
-        const double by_power = total > 0.0 && std::isfinite(total) ? power / total : uniform;
-        const double probability = (1.0 - UniformFraction) * by_power + UniformFraction * uniform;
-        sum += probability;
-        tables.cdfs.push_back(static_cast<float>(sum));
-        return static_cast<float>(probability);
-    };
-    if (has_tree) {
-        tables.scene.tree_probability = assign(tree_power);
-    } else {
-        tables.cdfs.push_back(0.0f);
+// The tree's irradiance times the squared distance, seen from far away along the mean axis of its emitters. A one-sided
+// emitter is a quarter as bright in the mean over all directions as along its axis, a two-sided one half.
+double intensity_of(const std::vector<LightLeaf>& leaves) {
+    double all = 0.0, one_sided = 0.0, two_sided = 0.0;
+    glm::dvec3 one_axis(0.0), two_axis(0.0);
+    for (const LightLeaf& leaf : leaves) {
+        if (leaf.spread >= pi) {
+            all += leaf.intensity;
+        } else if (leaf.two_sided) {
+            two_sided += leaf.intensity;
+            two_axis += (glm::dot(two_axis, leaf.axis) < 0.0 ? -leaf.intensity : leaf.intensity) * leaf.axis;
+        } else {
+            one_sided += leaf.intensity;
+            one_axis += leaf.intensity * leaf.axis;
+        }
     }
+    return all + 0.25 * one_sided + 0.75 * glm::length(one_axis) + 0.5 * (two_sided + glm::length(two_axis));
+}
+
+// Relative to their sum at a distance of the tree's extent.
+void weigh_lights(SceneTables& tables, const EmitterList& list, const DistantLights& distant) {
+    const double scale = tables.scene.tree_scale;
+    const double tree = list.leaves.empty() ? 0.0 : intensity_of(list.leaves) * scale * scale;
+    double total = tree;
+    for (const double irradiance : distant.irradiances) total += irradiance;
+    const auto weight = [&](double value) {
+        return total > 0.0 && std::isfinite(total) ? static_cast<float>(value / total) : 0.0f;
+    };
+    if (!list.leaves.empty())
+        tables.scene.tree_intensity = weight(tree / double(tables.light_nodes[0].power));
     for (std::size_t i = 0; i < distant.lights.size(); ++i) {
         tables.lights.push_back(distant.lights[i]);
-        tables.lights.back().probability = assign(distant.powers[i]);
+        tables.lights.back().irradiance = weight(distant.irradiances[i]);
     }
 }
 
 }  // namespace
 
 void add_lights(SceneTables& tables, const scene::Scene& scene, const FlatScene& flat_scene,
-                const MeshCatalog& meshes, double sky_luminance) {
+                double sky_luminance) {
     EmitterList list;
     DistantLights distant;
     add_mesh_lights(tables, list);
-    tables.bounds = bounds_of(tables, flat_scene, meshes);
-    const double radius = radius_of(tables.bounds);
-    add_placed_lights(tables, scene, flat_scene, radius, list, distant);
+    add_placed_lights(tables, scene, flat_scene, list, distant);
     add_tree(tables, list);
     if (sky_luminance > 0.0) {
         distant.add({.kind = shading::LightEnvironment, .layers = shading::AllLayers, .motion = -1},
-                    4.0 * pi * pi * radius * radius * sky_luminance);
+                    pi * sky_luminance);
     }
-    assign_probabilities(tables, list, distant);
+    weigh_lights(tables, list, distant);
     tables.scene.light_count = static_cast<std::uint32_t>(tables.lights.size());
     tables.scene.environment_light = sky_luminance > 0.0 ? int(tables.lights.size()) - 1 : -1;
 }

@@ -123,7 +123,8 @@ std::uint32_t features_of(const shading::Material& material, const shading::Mate
     const bool smooth = may_be_smooth(material.roughness, used(material.metallic_roughness_texture));
     const bool rough = !shading::is_smooth(material.roughness * material.roughness);
     const bool glass = material.transmission > 0.0f;
-    bool specular = (material.metallic > 0.0f || glass) && smooth;
+    const bool has_face = material.metallic < 1.0f && material.index_of_refraction != 1.0f;
+    bool specular = (material.metallic > 0.0f || glass || has_face) && smooth;
     specular |= glass && is_delta_at_any_roughness(material.index_of_refraction);
     std::uint32_t lobes = flag(glass && rough, shading::FeatureRoughGlass);
     if (extras != nullptr) {

@@ -169,6 +169,37 @@ bool is_solid_glass(const shading::Material& material) {
     return material.surface_shader < 0 && material.transmission > 0.0f && material.thin == 0;
 }
 
+namespace {
+
+// Relative to the render origin; low > high: empty.
+struct Bounds {
+    glm::dvec3 low{std::numeric_limits<double>::infinity()};
+    glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+};
+
+void add_box(Bounds& bounds, const Mesh& mesh, const glm::mat3& linear, const glm::vec3& translation) {
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        const glm::vec3 object{(corner & 1u) ? mesh.low.x : mesh.high.x,
+                               (corner & 2u) ? mesh.low.y : mesh.high.y,
+                               (corner & 4u) ? mesh.low.z : mesh.high.z};
+        const glm::dvec3 position = linear * object + translation;
+        bounds.low = glm::min(bounds.low, position);
+        bounds.high = glm::max(bounds.high, position);
+    }
+}
+
+// Over the shutter.
+Bounds bounds_of(const SceneTables& tables, const shading::Instance& instance, const Mesh& mesh) {
+    Bounds bounds;
+    if (!(mesh.low.x <= mesh.high.x)) return bounds;
+    for (const shading::Affine3x4& step : transform_keys_of(tables, instance)) {
+        add_box(bounds, mesh, step.linear, step.translation);
+    }
+    return bounds;
+}
+
+}  // namespace
+
 bool has_nested_glass(const SceneTables& tables, const FlatScene& flat_scene, const MeshCatalog& meshes) {
     std::vector<Bounds> glass;
     for (std::size_t i = 0; i < tables.instances.size(); ++i) {

@@ -145,6 +145,7 @@ void add_triangle(EmitterList& list, const EmissiveMesh& emissive, const ShapeKe
                            .spread = has_front ? 0.0 : pi,
                            .emission_angle = 0.5 * pi,
                            .power = power,
+                           .intensity = power / (pi * (has_front ? sides : 4.0)),
                            .emitter = index,
                            .two_sided = has_front && emissive.material.double_sided != 0});
 }

@@ -32,12 +32,6 @@ void add_instances(SceneTables& tables, const FlatScene& flat_scene, const MeshC
 void set_transform(shading::Instance& instance, const glm::dmat4& world_from_object,
                    const glm::dvec3& origin);
 
-// Bounds of an instance over the shutter.
-Bounds bounds_of(const SceneTables& tables, const shading::Instance& instance, const Mesh& mesh);
-// Bounds of all instances over the shutter; their radius, for the power of infinite lights.
-Bounds bounds_of(const SceneTables& tables, const FlatScene& flat_scene, const MeshCatalog& meshes);
-double radius_of(const Bounds& bounds);
-
 // Appends motion keys, relative to the render origin; returns the index of the motion, -1 without keys.
 int add_motion(SceneTables& tables, const glm::dmat4& beginning, std::span<const glm::dmat4> steps);
 
@@ -59,7 +53,7 @@ bool has_nested_glass(const SceneTables& tables, const FlatScene& flat_scene, co
 void add_media(SceneTables& tables, const scene::Scene& scene, const FlatScene& flat_scene,
                const MeshCatalog& meshes, const Indices& textures);
 
-// Returns the mean luminance over the sphere; 0 without a background.
+// Returns the mean luminance over the sphere that light samples are to find; 0: none.
 double add_environment(SceneTables& tables, const scene::Scene& scene, const Indices& textures);
 
 // Emitters in the order of their lights, and leaves of those with power.
@@ -73,7 +67,7 @@ void add_mesh_lights(SceneTables& tables, EmitterList& list);
 
 // All lights, those of meshes included.
 void add_lights(SceneTables& tables, const scene::Scene& scene, const FlatScene& flat_scene,
-                const MeshCatalog& meshes, double sky_luminance);
+                double sky_luminance);
 
 // Appends the CDF of the weights to the tables, normalised to end at 1 (uniform if all weights are 0), and returns
 // the index of its first entry.

@@ -108,7 +108,7 @@ SceneTables make_tables(const scene::Scene& scene, const FlatScene& flat_scene, 
     add_media(tables, scene, flat_scene, meshes, textures);
     tables.layers = masks_of(flat_scene);
     const double sky_luminance = add_environment(tables, scene, textures);
-    add_lights(tables, scene, flat_scene, meshes, sky_luminance);
+    add_lights(tables, scene, flat_scene, sky_luminance);
     return tables;
 }
 

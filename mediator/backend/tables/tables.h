@@ -11,12 +11,6 @@
 
 namespace tessera::backend {
 
-// Relative to the render origin; low > high: empty.
-struct Bounds {
-    glm::dvec3 low{std::numeric_limits<double>::infinity()};
-    glm::dvec3 high{-std::numeric_limits<double>::infinity()};
-};
-
 // All scene data for shading, relative to the render origin and ordered by object id: a function of the scene's
 // content alone, the same for all back-ends. Vertices and texels stay in their blobs.
 struct SceneTables {
@@ -39,7 +33,6 @@ struct SceneTables {
     shading::Scene scene{};                       // without the addresses of the tables
     glm::dvec3 render_origin{0.0};
     std::vector<std::uint32_t> layers;  // each layer mask of instances and lights, once
-    Bounds bounds;                      // of all instances
 
     // The blobs that the addresses in the records point to: of each texture, the environment map and each mesh.
     std::vector<scene::BlobPtr> texels, levels;
@@ -54,8 +47,7 @@ struct SceneTables {
     std::vector<KeyArrays> key_arrays;  // of each of mesh_keys
 };
 
-// The light tree or an infinite light is chosen in proportion to power, a tenth of the time uniformly, so that a wrong
-// power estimate adds noise but no bias. Addresses are those of the host.
+// Addresses are those of the host.
 SceneTables make_tables(const scene::Scene& scene, const FlatScene& flat_scene, const MeshCatalog& meshes,
                         const scene::BlobStore& blobs, MipmapCache& mipmaps);
 

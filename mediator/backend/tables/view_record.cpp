@@ -76,37 +76,38 @@ view::Renderer renderer_of(const view::View& view) {
 shading::View make_view(const view::View& view, const glm::dvec3& render_origin) {
     const view::CameraPose& camera = view.camera;
     const glm::dmat4& m = camera.world_from_camera;
-    return {.seed = view.seed,
-            .eye = glm::vec3(glm::dvec3(m[3]) - render_origin),
-            .right = glm::vec3(m[0]),
-            .up = glm::vec3(m[1]),
-            .forward = -glm::vec3(m[2]),
-            .image_center = {static_cast<float>(0.5 * (camera.left + camera.right)),
-                             static_cast<float>(0.5 * (camera.top + camera.bottom))},
-            .step = {static_cast<float>((camera.right - camera.left) / view.width),
-                     static_cast<float>((camera.bottom - camera.top) / view.height)},
-            .width = view.width,
-            .height = view.height,
-            .pixel_filter = static_cast<std::uint32_t>(view.pixel_filter.kind),
-            .filter_radius = view.pixel_filter.radius,
-            // Paths have up to max_bounces + 1 scattering events, so 0 is direct light (as in Cycles).
-            .max_scatter_events = view.max_bounces == view::UnlimitedBounces ? shading::UnlimitedScatterEvents
-                                                                             : view.max_bounces + 1,
-            .renderer = static_cast<std::uint32_t>(renderer_of(view)),
-            .path_class = static_cast<std::uint32_t>(view.path_class),
-            .feature_rule = static_cast<std::uint32_t>(view.feature_rule),
-            .channels = view.channels.kernel_bits(),
-            .recorded_quantities = recorded_quantities(view),
-            .transparent_background = view.transparent_background ? 1u : 0u,
-            .strategy = shading::StrategyBoth,
-            .layers = view.layers,
-            .camera = camera_bits(camera),
-            .lens_radius = static_cast<float>(camera.lens_radius),
-            .focus_distance = static_cast<float>(camera.focus_distance),
-            .camera_keys = {},
-            .camera_key_intervals = static_cast<std::uint32_t>(camera.motion.size()),
-            .containing_media = shading::no_media(),
-            .unused = 0};
+    return {
+        .seed = view.seed,
+        .eye = glm::vec3(glm::dvec3(m[3]) - render_origin),
+        .right = glm::vec3(m[0]),
+        .up = glm::vec3(m[1]),
+        .forward = -glm::vec3(m[2]),
+        .image_center = {static_cast<float>(0.5 * (camera.left + camera.right)),
+                         static_cast<float>(0.5 * (camera.top + camera.bottom))},
+        .step = {static_cast<float>((camera.right - camera.left) / view.width),
+                 static_cast<float>((camera.bottom - camera.top) / view.height)},
+        .width = view.width,
+        .height = view.height,
+        .pixel_filter = static_cast<std::uint32_t>(view.pixel_filter.kind),
+        .filter_radius = view.pixel_filter.radius,
+        // Paths have up to max_bounces + 1 scattering events that are not perfect speculars, so 0 is direct light.
+        .max_scatter_events = view.max_bounces == view::UnlimitedBounces ? shading::UnlimitedScatterEvents
+                                                                         : view.max_bounces + 1,
+        .renderer = static_cast<std::uint32_t>(renderer_of(view)),
+        .path_class = static_cast<std::uint32_t>(view.path_class),
+        .feature_rule = static_cast<std::uint32_t>(view.feature_rule),
+        .channels = view.channels.kernel_bits(),
+        .recorded_quantities = recorded_quantities(view),
+        .transparent_background = view.transparent_background ? 1u : 0u,
+        .strategy = shading::StrategyBoth,
+        .layers = view.layers,
+        .camera = camera_bits(camera),
+        .lens_radius = static_cast<float>(camera.lens_radius),
+        .focus_distance = static_cast<float>(camera.focus_distance),
+        .camera_keys = {},
+        .camera_key_intervals = static_cast<std::uint32_t>(camera.motion.size()),
+        .containing_media = shading::no_media(),
+        .max_specular_events = view.max_specular_bounces};
 }
 
 std::vector<shading::Affine3x4> camera_keys(const view::CameraPose& camera, const glm::dvec3& render_origin) {

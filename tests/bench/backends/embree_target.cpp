@@ -48,10 +48,10 @@ class EmbreeCaster final : public RayCaster {
         shading::Hit hit{.instance = shading::NoInstance};
         if (kind_ == RayQueryKind::Any) {
             bool meets_walls = false;
-            if (embree::trace_occluded(context, ray.origin, ray.direction, ray.far, 0, meets_walls))
+            if (embree::trace_occluded(context, ray.origin, ray.direction, ray.far, {}, meets_walls))
                 hit.instance = 0;
         } else {
-            embree::trace_closest(context, {ray.origin, ray.direction}, 0, shading::skip_nothing(), hit);
+            embree::trace_closest(context, {ray.origin, ray.direction}, {}, shading::skip_nothing(), hit);
         }
         return hit;
     }

@@ -1,6 +1,7 @@
 // Many lights: gain and cost of the light tree against uniform selection. Light in fog: gain of equiangular
-// sampling over free flight sampling alone.
-//   tessera_light_bench [fog|trees]
+// sampling over free flight sampling alone. Skies: gain of the choice by irradiance over an even choice, and of light samples of
+// the sky over BSDF samples alone.
+//   tessera_light_bench [fog|trees|skies]
 // 10,000 emissive one-sided triangles of 0.1 m over a ground of 100 m, of all orientations, with powers over
 // two orders of magnitude. Uniform selection uses the same tree with equal importances, so its time is not
 // meaningful: instead, the time of a scene with a single emissive triangle is used.
@@ -191,6 +192,83 @@ void run_fogs() {
     }
 }
 
+// ---- skies ----
+
+// An overcast sky, with a sun of `peak` times the zenith in one texel.
+void add_sky(Model& model, float peak) {
+    constexpr std::uint32_t Width = 128, Height = 64;
+    std::vector<glm::vec3> texels;
+    for (std::uint32_t y = 0; y < Height; ++y) {
+        const double theta = M_PI * (y + 0.5) / Height;
+        const double value = theta < 0.5 * M_PI ? (1.0 + 2.0 * std::cos(theta)) / 3.0 : 0.1;
+        texels.insert(texels.end(), Width, glm::vec3(static_cast<float>(value)));
+    }
+    if (peak > 0.0f) texels[20 * Width + 90] = glm::vec3(peak);
+    scene::Background background{.strength = 1.0f};
+    background.environment =
+        model.texture({.width = Width, .height = Height, .format = scene::TexelFormat::RgbFloat}, texels)
+            .texture;
+    model.sky(background);
+}
+
+// A room of 8 x 8 x 3 m, y up, with one side open; a lamp under its ceiling.
+void add_room(Model& model) {
+    const ObjectId wall = model.material(chalk(glm::vec3(0.7f)));
+    model.quad(wall, {{{-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}}});
+    model.quad(wall, {{{-4, 3, 4}, {-4, 3, -4}, {4, 3, -4}, {4, 3, 4}}});
+    model.quad(wall, {{{-4, 0, -4}, {4, 0, -4}, {4, 3, -4}, {-4, 3, -4}}});
+    model.quad(wall, {{{-4, 0, 4}, {-4, 0, -4}, {-4, 3, -4}, {-4, 3, 4}}});
+    model.quad(wall, {{{-4, 0, 4}, {-4, 3, 4}, {4, 3, 4}, {4, 0, 4}}});
+    model.quad(
+        model.material(lamp(20.0f)),
+        {{{-0.25f, 2.9f, -0.25f}, {0.25f, 2.9f, -0.25f}, {0.25f, 2.9f, 0.25f}, {-0.25f, 2.9f, 0.25f}}});
+}
+
+// relMSE x time of a choice of lights without regard to where they are, and of BSDF samples alone, against the renderer's.
+void run_sky(const char* name, bool has_room, float peak) {
+    Model model;
+    add_sky(model, peak);
+    model.quad(model.material(chalk(glm::vec3(0.5f))),
+               {{{-99, -0.01f, 99}, {99, -0.01f, 99}, {99, -0.01f, -99}, {-99, -0.01f, -99}}});
+    if (has_room) add_room(model);
+    const SceneAdapter& world = model.build();
+    backend::SceneTables even = world.tables();
+    even.scene.tree_intensity = 0.0f;
+    for (shading::LightSource& light : even.lights) light.irradiance = 0.0f;
+    view::View view =
+        small_view({0.0, 2.0, 3.5}, 1.0, Size, glm::rotate(glm::dmat4(1.0), -0.6, {1.0, 0.0, 0.0}));
+    view.max_bounces = 0;
+    const std::vector<double> truth = picture(world, world.tables(), view, ReferenceSpp, 99);
+    const auto cost = [&](const backend::SceneTables& tables, Strategy strategy) {
+        view.seed = 1;
+        const PathTracer tracer(tables, world.scene(), view, strategy);
+        std::vector<double> pixels(Size * Size);
+        std::uint64_t rays = 0;
+        const double start = cpu_seconds();
+        for (std::uint64_t sample = 0; sample < Spp; ++sample) {
+            for (std::uint32_t i = 0; i < Size * Size; ++i)
+                pixels[i] += red(tracer.trace(i % Size, i / Size, sample, rays)) / Spp;
+        }
+        return relmse(pixels, truth) * (cpu_seconds() - start);
+    };
+    std::vector<double> evens, bsdfs;
+    for (std::uint32_t round = 0; round < Rounds; ++round) {
+        const double own = cost(world.tables(), Strategy::Both);
+        evens.push_back(cost(even, Strategy::Both) / own);
+        bsdfs.push_back(cost(world.tables(), Strategy::BsdfOnly) / own);
+    }
+    std::printf("%-22s relMSE x time: even choice %.2f x, BSDF samples alone %.2f x\n", name, median(evens),
+                median(bsdfs));
+    std::fflush(stdout);
+}
+
+void run_skies() {
+    run_sky("overcast, open", false, 0.0f);
+    run_sky("sun in the sky, open", false, 2e4f);
+    run_sky("overcast, room", true, 0.0f);
+    run_sky("sun in the sky, room", true, 2e4f);
+}
+
 // Build times of light trees.
 void run_builds() {
     for (const std::uint32_t count : {10000u, 1000000u}) {
@@ -221,8 +299,9 @@ void run_builds() {
 
 int main(int count, char** arguments) {
     const std::string_view part = count > 1 ? arguments[1] : "";
-    if (part != "trees") tessera::embree::run_fogs();
-    if (part == "fog") return 0;
+    if (part == "" || part == "skies") tessera::embree::run_skies();
+    if (part == "" || part == "fog") tessera::embree::run_fogs();
+    if (part == "fog" || part == "skies") return 0;
     tessera::embree::run_builds();
     tessera::embree::run();
 }
