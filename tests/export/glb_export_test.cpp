@@ -140,9 +140,24 @@ INSTANTIATE_TEST_SUITE_P(Scenes, GlbOfFile, testing::Values("room-1.glb", "studi
                              return name;
                          });
 
+// Volumes need a closed mesh.
+void close_square(RichScene& rich) {
+    const std::vector<std::uint32_t> both_sides{0, 1, 2, 2, 1, 3, 0, 2, 1, 2, 3, 1};
+    for (const auto& [id, object] : rich.scene.objects()) {
+        const auto* found = std::get_if<scene::Geometry>(object.get());
+        if (found == nullptr || found->name != "square") continue;
+        scene::Geometry geometry = *found;
+        geometry.indices = scene::reference(*rich.blobs.insert(std::as_bytes(std::span(both_sides))));
+        ASSERT_TRUE(rich.scene.apply_entries(
+            {scene::Update{id, scene::Fields<scene::Geometry>(&scene::Geometry::indices).bits(), geometry}}));
+        return;
+    }
+}
+
 TEST(GlbExport, EverythingThatGltfSupportsIsRestored) {
     RichScene rich;
     make_rich(rich);
+    close_square(rich);
     Notices notices;
     const import::ImportedScene imported = through_glb(rich.scene, rich.blobs, notices);
     // A geometry without normals and with the default material keeps its arrays unchanged.
