@@ -308,6 +308,7 @@ inline void fill_bsdf(INOUT(Bsdf) bsdf, FloatArray table, IN(MaterialSample) mat
     // A smooth face over a diffuse base is a perfect specular (surfaces.h), as smooth metal is (make_mixture).
     bsdf.has_facets = reflects && (mixture.metal > 0.0f || !has_smooth_facets(material_sample));
     if (!(mixture.rough_glass > 0.0f)) bsdf.lobes &= ~FeatureRoughGlass;
+    bsdf.glass_multiscatter.chance = 0.0f;
     if ((bsdf.lobes & FeatureRoughGlass) != 0u)
         bsdf.glass_multiscatter = glass_multiscatter(table, bsdf.glass, bsdf.roughness, wo.z);
     bsdf.coat_out = 1.0f;
