@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "mediator/base/random.h"
 #include "tests/statistics/model.h"
 
@@ -60,6 +62,21 @@ inline std::vector<Panel> dome(int count, double farthest, std::uint64_t seed) {
         panels.push_back(panel);
     }
     return panels;
+}
+
+// Of a function of points that are uniform in the unit square.
+inline Mean mean_over_square(const std::function<double(const glm::vec2&)>& value) {
+    constexpr int Count = 200'000;
+    CounterRandom random(32);
+    double sum = 0.0, squares = 0.0;
+    for (int i = 0; i < Count; ++i) {
+        const double found =
+            value({float(random.uniform()) * 0.99999994f, float(random.uniform()) * 0.99999994f});
+        sum += found;
+        squares += found * found;
+    }
+    const double mean = sum / Count;
+    return {mean, std::sqrt(std::max(0.0, squares / Count - mean * mean) / Count)};
 }
 
 enum class Sides { One, Both };

@@ -113,34 +113,48 @@ TEST(TriangleLights, SolidAngleSamplingReducesVarianceNearby) {
         flat.solid_angle = 0.0f;
         const float inverse_root_area = float(1.0 / std::sqrt(area_of(c)));
         const glm::dvec3 normal = glm::normalize(glm::cross(c.q - c.p, c.r - c.p));
-        const auto estimate = [&](const TriangleView& view, double& error) {
-            CounterRandom random(32);
-            constexpr int Count = 200'000;
-            double sum = 0.0, squares = 0.0;
-            for (int i = 0; i < Count; ++i) {
-                const glm::vec2 u(float(random.uniform()) * 0.99999994f,
-                                  float(random.uniform()) * 0.99999994f);
+        const auto estimate = [&](const TriangleView& view) {
+            return mean_over_square([&](const glm::vec2& u) {
                 const glm::vec2 b = sample_triangle_light(view, u);
                 const glm::dvec3 point = c.p + (c.q - c.p) * double(b.x) + (c.r - c.p) * double(b.y);
-                const double distance = glm::length(point),
-                             facing = std::fabs(glm::dot(point, normal)) / distance;
-                const double value =
-                    point.z / distance /
-                    double(triangle_pdf(view, inverse_root_area, float(distance), float(facing)));
-                sum += value;
-                squares += value * value;
-            }
-            error = std::sqrt((squares / Count - sum * sum / Count / Count) / Count);
-            return sum / Count;
+                const double distance = glm::length(point);
+                const double facing = std::fabs(glm::dot(point, normal)) / distance;
+                return point.z / distance /
+                       double(triangle_pdf(view, inverse_root_area, float(distance), float(facing)));
+            });
         };
         const double exact = irradiance_of({{glm::vec3(c.p), glm::vec3(c.q), glm::vec3(c.r)}});
-        double by_angle = 0.0, by_area = 0.0;
-        const double mean = estimate(seen, by_angle);
-        estimate(flat, by_area);
+        const auto [mean, by_angle] = estimate(seen);
+        const double by_area = estimate(flat).standard_error;
         std::printf("%-14s variance by solid angle / by area: %.3f\n", c.name,
                     by_angle * by_angle / (by_area * by_area));
         EXPECT_NEAR(mean, exact, 4.5 * by_angle + 1e-5 * exact) << c.name;
         EXPECT_LT(by_angle, by_area) << c.name;
+    }
+}
+
+// A tilted lamp of 1.5 x 1.5 m, 3 m above the ground, seen from all around: closed form.
+TEST(TriangleLights, HaveLambertsIrradiance) {
+    const glm::dmat4 turn =
+        glm::rotate(glm::rotate(glm::dmat4(1.0), 0.3, {0.0, 1.0, 0.0}), M_PI, {1.0, 0.0, 0.0});
+    for (const glm::dvec2 place :
+         {glm::dvec2(2.0, -1.0), glm::dvec2(0.0, -2.5), glm::dvec2(-2.0, -2.0), glm::dvec2(1.5, 2.0)}) {
+        std::vector<glm::vec3> corners;
+        for (const glm::dvec2 corner : {glm::dvec2(-0.75, -0.75), glm::dvec2(0.75, -0.75),
+                                        glm::dvec2(0.75, 0.75), glm::dvec2(-0.75, 0.75)}) {
+            corners.emplace_back(glm::dvec3(-1.0 - place.x, -place.y, 3.0) +
+                                 glm::dvec3(turn * glm::dvec4(corner, 0.0, 0.0)));
+        }
+        const std::vector<Panel> panels{{{corners[0], corners[1], corners[2]}},
+                                        {{corners[0], corners[2], corners[3]}}};
+        Model model;
+        add_ground(model);
+        add_panels(model, panels, Sides::Both);
+        const Mean mean = seen_by(model.build(), at_origin(0.5), Strategy::Both, 1024);
+        const double expected =
+            GroundAlbedo / M_PI * (std::fabs(irradiance_of(panels[0])) + std::fabs(irradiance_of(panels[1])));
+        EXPECT_NEAR(mean.value, expected, 1e-3 * expected) << place.x << " " << place.y;
+        EXPECT_LT(mean.standard_error, 1e-3 * expected);
     }
 }
 

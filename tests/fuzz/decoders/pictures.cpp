@@ -67,6 +67,12 @@ void png(Bytes bytes) {
     } else {
         require_reason(floats.error());
     }
+    const auto deep = picture::read_deep_png(bytes, import::ImageLimits);
+    if (!deep) {
+        require_reason(deep.error());
+    } else if (*deep) {
+        require_whole(**deep);
+    }
     const auto rgba = picture::read_png_rgba(bytes, import::ImageLimits);
     if (!rgba) return require_reason(rgba.error());
     require_whole(*rgba);
@@ -75,6 +81,7 @@ void png(Bytes bytes) {
 Seeds png_seeds() {
     const std::vector<std::uint8_t> rgba(std::size_t{4} * 5 * 3, 77);
     return {picture::encode_rgba_png(5, 3, rgba),
+            picture::encode_deep_png(4, 2, std::vector<float>(24, 0.3f)),
             picture::encode_picture(gradient(3), picture::FileFormat::Png, view::DisplayTransform{})};
 }
 
