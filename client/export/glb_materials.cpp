@@ -220,7 +220,7 @@ int GlbMaterials::image(const scene::Texture& texture) {
     const std::uint32_t height = texture.height * texture.depth;
     image.bufferView =
         buffer_.view(texture.format == scene::TexelFormat::RgbFloat
-                         ? picture::encode_deep_png(texture.width, height, texels->as<float>())
+                         ? picture::encode_png16(texture.width, height, texels->as<float>())
                          : picture::encode_rgba_png(texture.width, height, texels->as<std::uint8_t>()));
     model_.images.push_back(std::move(image));
     return entry->second = static_cast<int>(model_.images.size()) - 1;

@@ -47,7 +47,7 @@ Expected<GltfTextures::Texels> GltfTextures::decode(int index, TextureUse use) {
             return failure(ErrorCode::InvalidInput,
                            "its file cannot be read: put it into the scene's folder");
         if (use == TextureUse::Data) {
-            const auto deep = picture::read_deep_png(std::as_bytes(bytes), ImageLimits);
+            const auto deep = picture::read_png16(std::as_bytes(bytes), ImageLimits);
             if (!deep) return tl::unexpected<Error>(deep.error());
             if (*deep)
                 return Texels{(*deep)->width, (*deep)->height, builder_.blob((*deep)->values),

@@ -167,8 +167,8 @@ Expected<frame::Image> read_png(std::span<const std::byte> bytes) {
     return floats(reader);
 }
 
-Expected<std::optional<frame::Image>> read_deep_png(std::span<const std::byte> bytes,
-                                                    const PictureLimits& limits) {
+Expected<std::optional<frame::Image>> read_png16(std::span<const std::byte> bytes,
+                                                 const PictureLimits& limits) {
     if (!is_png(bytes)) return std::nullopt;
     Source source{bytes};
     PngReader reader(source);

@@ -26,8 +26,8 @@ struct RgbaImage {
 Expected<RgbaImage> read_png_rgba(std::span<const std::byte> bytes, const PictureLimits& limits);
 
 // Decodes a PNG of 16 bits without alpha to three components in [0, 1], no gamma; none for any other.
-Expected<std::optional<frame::Image>> read_deep_png(std::span<const std::byte> bytes,
-                                                    const PictureLimits& limits);
+Expected<std::optional<frame::Image>> read_png16(std::span<const std::byte> bytes,
+                                                 const PictureLimits& limits);
 
 bool is_png(std::span<const std::byte> bytes);  // whether these are the first bytes of one
 

@@ -55,8 +55,7 @@ std::vector<std::byte> encode_rgba_png(std::uint32_t width, std::uint32_t height
     return encode(describe(width, height, PNG_FORMAT_RGBA), std::as_bytes(rgba));
 }
 
-std::vector<std::byte> encode_deep_png(std::uint32_t width, std::uint32_t height,
-                                       std::span<const float> rgb) {
+std::vector<std::byte> encode_png16(std::uint32_t width, std::uint32_t height, std::span<const float> rgb) {
     std::vector<std::uint16_t> values;
     values.reserve(rgb.size());
     for (const float value : rgb)

@@ -21,6 +21,6 @@ std::vector<std::byte> encode_rgba_png(std::uint32_t width, std::uint32_t height
                                        std::span<const std::uint8_t> rgba);
 
 // 16 bits, 3 values a pixel in [0, 1]; others are clamped.
-std::vector<std::byte> encode_deep_png(std::uint32_t width, std::uint32_t height, std::span<const float> rgb);
+std::vector<std::byte> encode_png16(std::uint32_t width, std::uint32_t height, std::span<const float> rgb);
 
 }  // namespace tessera::picture

@@ -173,7 +173,7 @@ inline LightSample sample_distant(IN(Scene) scene, IN(LightSource) light, float 
 // Transmissive surfaces receive light from both sides; points in media have no normal.
 inline Receiver receiver_at(IN(Surface) surface) {
     const bool through = (surface.bsdf.lobes & FeatureRoughGlass) != 0u;
-    const vec3 normal = surface.is_smooth ? surface.frame[2] : surface.geometric_normal;
+    const vec3 normal = surface.is_lifted ? surface.frame[2] : surface.geometric_normal;
     return Receiver(surface.position, through ? vec3(0.0f) : normal, vec3(0.0f));
 }
 

@@ -16,7 +16,7 @@ struct Surface {
     vec3 position;  // on the smooth surface that the mesh stands for, `lift` above the triangle
     vec3 error;     // bound of the position's rounding error, per axis
     vec3 lift;
-    bool is_smooth;         // has such a lift: directions count as by the shading normal alone
+    bool is_lifted;         // has such a lift: directions count as by the shading normal alone
     vec3 geometric_normal;  // unit length, on the side that the path came from
     mat3 frame;             // shading frame, third axis = shading normal, same side
     vec3 albedo;
@@ -255,7 +255,7 @@ inline void set_scattering(INOUT(Surface) surface, IN(Scene) scene, IN(Instance)
 inline void lift_surface(INOUT(Surface) surface, IN(Instance) instance, IN(Mesh) mesh, IN(Material) material,
                          IN(Triangle) t, uvec3 corners, vec2 b, bool front) {
     surface.lift = vec3(0.0f);
-    surface.is_smooth = false;
+    surface.is_lifted = false;
     if ((mesh.arrays & MeshNormals) == 0u || !surface.scatters || surface.medium != NoInstance) return;
     if (material.surface_shader >= 0 || material.transmission > 0.0f || emits(material)) return;
     const vec3 mean =
@@ -264,7 +264,7 @@ inline void lift_surface(INOUT(Surface) surface, IN(Instance) instance, IN(Mesh)
     const vec3 lift = instance.linear * smooth_lift(mesh, t, corners, b, outwards == front ? 1.0f : -1.0f);
     if (!(dot(lift, surface.geometric_normal) > 0.0f)) return;
     surface.lift = lift;
-    surface.is_smooth = true;
+    surface.is_lifted = true;
     surface.position += lift;
     // Of this sum and of its inverse, and of the lift itself: 16 roundings.
     surface.error += rounding_bound(2.0f) * abs(surface.position) + rounding_bound(16.0f) * abs(lift);
@@ -335,7 +335,7 @@ inline Surface scattering_place(vec3 position, vec3 direction, float anisotropy,
     surface.position = position;
     surface.error = vec3(0.0f);
     surface.lift = vec3(0.0f);
-    surface.is_smooth = false;
+    surface.is_lifted = false;
     surface.geometric_normal = vec3(0.0f);
     surface.frame = frame_around(-direction);
     surface.albedo = vec3(1.0f);  // absorption is in the path's throughput

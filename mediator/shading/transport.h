@@ -68,7 +68,7 @@ struct Lobe {
 // through. On a smooth surface the shading normal decides alone.
 inline bool is_consistent_side(IN(Surface) surface, vec3 direction, vec3 wi) {
     if (is_in_medium(surface)) return true;
-    if (surface.is_smooth) return wi.z > 0.0f;
+    if (surface.is_lifted) return wi.z > 0.0f;
     const float side = dot(direction, surface.geometric_normal);
     if ((surface.bsdf.lobes & FeatureRoughGlass) != 0u && wi.z < 0.0f) return side < 0.0f;
     return side > 0.0f;
@@ -76,7 +76,7 @@ inline bool is_consistent_side(IN(Surface) surface, vec3 direction, vec3 wi) {
 
 // What is reflected by a smooth surface leaves from above the triangle, all other rays from the triangle.
 inline Ray leaving(IN(Surface) surface, vec3 direction) {
-    if (surface.is_smooth) {
+    if (surface.is_lifted) {
         const bool reflects = dot(direction, surface.frame[2]) > 0.0f;
         const vec3 place = reflects ? surface.position : surface.position - surface.lift;
         const vec3 side = reflects ? surface.geometric_normal : direction;

@@ -200,7 +200,7 @@ TEST(GltfTexture, UsedAsColorAndDataIsTwoObjectsOverOneBlob) {
 // Steps of 1/255 in normals are seen in mirrors; colours are kept in eight bits.
 TEST(GltfTexture, SixteenBitsOfDataAreKept) {
     const std::vector<float> exact{0.5f, 12345.0f / 65535.0f, 1.0f};
-    const std::vector<std::byte> bytes = picture::encode_deep_png(1, 1, exact);
+    const std::vector<std::byte> bytes = picture::encode_png16(1, 1, exact);
     SceneFile file;
     file.image({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     const ImportedScene scene = with_materials(file, {R"({"name":"both","pbrMetallicRoughness":{
@@ -216,8 +216,7 @@ TEST(GltfTexture, SixteenBitsOfDataAreKept) {
 }
 
 TEST(GltfTexture, ATruncatedImageOfSixteenBitsIsReported) {
-    const std::vector<std::byte> bytes =
-        picture::encode_deep_png(64, 64, std::vector<float>(64 * 64 * 3, 0.3f));
+    const std::vector<std::byte> bytes = picture::encode_png16(64, 64, std::vector<float>(64 * 64 * 3, 0.3f));
     for (const std::size_t size : {bytes.size() / 2, std::size_t{40}, std::size_t{9}}) {
         SceneFile file;
         file.image({reinterpret_cast<const char*>(bytes.data()), size});

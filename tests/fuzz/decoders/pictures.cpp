@@ -67,7 +67,7 @@ void png(Bytes bytes) {
     } else {
         require_reason(floats.error());
     }
-    const auto deep = picture::read_deep_png(bytes, import::ImageLimits);
+    const auto deep = picture::read_png16(bytes, import::ImageLimits);
     if (!deep) {
         require_reason(deep.error());
     } else if (*deep) {
@@ -80,8 +80,7 @@ void png(Bytes bytes) {
 
 Seeds png_seeds() {
     const std::vector<std::uint8_t> rgba(std::size_t{4} * 5 * 3, 77);
-    return {picture::encode_rgba_png(5, 3, rgba),
-            picture::encode_deep_png(4, 2, std::vector<float>(24, 0.3f)),
+    return {picture::encode_rgba_png(5, 3, rgba), picture::encode_png16(4, 2, std::vector<float>(24, 0.3f)),
             picture::encode_picture(gradient(3), picture::FileFormat::Png, view::DisplayTransform{})};
 }
 
