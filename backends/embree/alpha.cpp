@@ -17,7 +17,8 @@ void alpha_filter(const RTCFilterFunctionNArguments* arguments) {
             context->meets_walls = true;
             arguments->valid[i] = 0;
         } else if (shading::skips(context->skip, instance, distance) ||
-                   !shading::stops_at(*context->scene, instance, triangle, barycentric, context->numbers)) {
+                   !shading::stops_at(*context->scene, context->skip, instance, triangle, barycentric,
+                                      context->numbers)) {
             arguments->valid[i] = 0;
         }
     }

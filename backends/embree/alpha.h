@@ -19,7 +19,7 @@ struct TraceContext {
     mutable bool meets_walls = false;  // it has met thin walls (is_thin_wall)
 };
 
-// Embree filter function: rejects hits that the ray has already passed (Skip) or that alpha lets pass
+// Embree filter function: rejects hits that the ray has already passed (Skip), that alpha lets pass or that are unlit
 // (stops_at), and on the way to a light thin walls.
 void alpha_filter(const RTCFilterFunctionNArguments* arguments);
 

@@ -47,6 +47,7 @@ bool trace_occluded(const Rays& rays, const glm::vec3& origin, const glm::vec3& 
                     const shading::Sampler& numbers, bool& meets_walls) {
     TraceContext started = start(rays, numbers);
     started.connects = true;
+    started.skip.unlit = true;
     RTCRay ray{origin.x,  origin.y,  origin.z, shading::NearestHit, segment.x, segment.y,
                segment.z, rays.time, far,      rays.view.layers,    0,         0};
     rtcOccluded1(rays.top, &started.embree, &ray);

@@ -27,8 +27,8 @@ bool stops_ray(const HostContext& context, const shading::Hit& candidate, const 
         return false;
     }
     if (shading::skips(context.skip, candidate.instance, candidate.distance)) return false;
-    return shading::stops_at(context.scene, candidate.instance, candidate.triangle, candidate.barycentric,
-                             numbers);
+    return shading::stops_at(context.scene, context.skip, candidate.instance, candidate.triangle,
+                             candidate.barycentric, numbers);
 }
 
 bool trace_closest(const HostContext& context, const shading::Ray& ray, const shading::Sampler& numbers,
@@ -47,6 +47,7 @@ bool trace_occluded(const HostContext& context, const glm::vec3& origin, const g
     meets_walls = false;
     HostContext asked = context;
     asked.meets_walls = &meets_walls;
+    asked.skip.unlit = true;
     return shading::bvh_trace(context.pool, context.top, origin, segment, shading::NearestHit, far,
                               shading::BvhAny | shading::BvhAlpha | shading::BvhMotion, context.view.layers,
                               context.time, asked, numbers)

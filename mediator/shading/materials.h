@@ -1,6 +1,7 @@
 #ifndef TESSERA_MEDIATOR_SHADING_MATERIALS_H
 #define TESSERA_MEDIATOR_SHADING_MATERIALS_H
 
+#include "mediator/shading/rays.h"
 #include "mediator/shading/sobol.h"
 #include "mediator/shading/textures.h"
 
@@ -67,11 +68,14 @@ inline bool alpha_stops(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, u
     return sample_pair(Sampler(numbers.index, seed), AlphaPair).x < alpha;
 }
 
-// Whether a surface with alpha stops a ray. Mask: by the cutoff. Blend: by a random number of its own for each
+// Whether a surface with alpha, or an unlit one, stops a ray. Mask: by the cutoff. Blend: by a random number of its own for each
 // triangle, stratified over the samples, so that the result does not depend on the order in which triangles
 // are visited; a fraction alpha of the rays stops. Medium boundaries always stop rays, since crossing one changes the
 // containing media; passes_boundary tests whether there is a surface as well.
-inline bool stops_at(IN(Scene) scene, uint instance, uint triangle, vec2 b, IN(Sampler) numbers) {
+inline bool stops_at(IN(Scene) scene, IN(Skip) skip, uint instance, uint triangle, vec2 b,
+                     IN(Sampler) numbers) {
+    if (skip.unlit && scene.materials.items[scene.instances.items[instance].material].unlit != 0u)
+        return false;
     if ((scene.features & FeatureMedia) != 0u && scene.instances.items[instance].medium >= 0) return true;
     return alpha_stops(scene, scene.materials.items[scene.instances.items[instance].material],
                        scene.meshes.items[scene.instances.items[instance].mesh], instance, triangle, b,

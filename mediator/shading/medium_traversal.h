@@ -94,11 +94,11 @@ inline void cross_boundary(IN(Scene) scene, INOUT(MediumTraversal) traversal, IN
     traversal.segment_index += 1u;
     traversal.enters = boundary.enters;
     traversal.skip =
-        Skip(hit.instance, greater_of(hit.distance - tolerance, NearestHit), hit.distance + tolerance);
+        Skip(hit.instance, greater_of(hit.distance - tolerance, NearestHit), hit.distance + tolerance, false);
     if (!at_another) return;
     // Two coincident boundaries would otherwise be hit alternately for ever.
     containing_media = after_crossing(scene, containing_media, hit.instance, boundary.enters);
-    traversal.skip = Skip(NoInstance, hit.distance + tolerance, 0.0f);
+    traversal.skip = Skip(NoInstance, hit.distance + tolerance, 0.0f, false);
 }
 
 // Completes the crossing once the next hit is known, and whether it is a surface.

@@ -115,7 +115,9 @@ WITH_CONTEXT inline PathEvent next_event(IN(Context) context, INOUT(PathState) s
             event.hit = first_hit.hit;
             event.is_hit = first_hit.hit.instance != NoInstance;
         } else {
-            event.is_hit = trace_closest(context, state.ray, numbers, state.traversal.skip, event.hit);
+            Skip skip = state.traversal.skip;
+            skip.unlit = event.purpose == RayConnects || passes_unlit(state.path);
+            event.is_hit = trace_closest(context, state.ray, numbers, skip, event.hit);
         }
     }
     const bool is_boundary = opens && event.is_hit && passes_boundary(context.scene, event.hit, numbers);

@@ -61,6 +61,12 @@ inline uint channel_of(IN(Sampler) numbers) {
     return (numbers.index % 3u + numbers.seed % 3u) % 3u;
 }
 
+// Unlit surfaces (KHR_materials_unlit) are shown as they are, to the camera and in perfect speculars. Otherwise they
+// neither send light nor stop it, as in rasterisers.
+inline bool passes_unlit(IN(Path) path) {
+    return path.class_info.scatter_count > 0u;
+}
+
 // Whether the path may scatter once more, by a perfect specular or otherwise.
 inline bool may_scatter(IN(Path) path, IN(View) view, bool is_specular) {
     return is_specular ? path.speculars < view.max_specular_events

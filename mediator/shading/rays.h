@@ -13,11 +13,12 @@ struct Ray {
 inline constexpr uint NoInstance = 0xffffffffu;  // of a Hit: a miss
 
 // Hits to skip because the ray has passed them already: all up to `near`, and those of one instance up to
-// `far`.
+// `far`; and all on unlit surfaces (passes_unlit).
 struct Skip {
     uint instance;
     float near;
     float far;
+    bool unlit;
 };
 
 struct Hit {
@@ -36,7 +37,7 @@ inline bool skips(IN(Skip) skip, uint instance, float distance) {
 inline constexpr float NearestHit = 1.17549435e-38f;
 
 inline Skip skip_nothing() {
-    return Skip(NoInstance, NearestHit, 0.0f);
+    return Skip(NoInstance, NearestHit, 0.0f, false);
 }
 
 RECORDS_END

@@ -128,8 +128,8 @@ TEST(Parity, WhereLayersAreHidden) {
     EXPECT_LE(counts.vulkan, 3 * counts.control);
 }
 
-// Connections to the light pass two tinted panes under the ceiling, and one in front of a block.
-TEST(Parity, ThroughPanes) {
+// Connections to the light pass two tinted panes and an unlit sheet under the ceiling, and a pane in front of a block.
+TEST(Parity, ThroughPanesAndAnUnlitSheet) {
     tools::bench::BenchScene scene = bench_scene("cornell");
     const auto blob = [&](const auto& values) {
         scene.blobs.push_back(std::make_shared<scene::Blob>(std::as_bytes(std::span(values))));
@@ -146,19 +146,22 @@ TEST(Parity, ThroughPanes) {
                                                .roughness = 0.0f,
                                                .double_sided = true,
                                                .transmission = 1.0f});
-    const auto pane = [&](const std::array<glm::vec3, 4>& corners) {
+    const ObjectId unlit =
+        add(scene::Material{.base_color = {0.2f, 0.5f, 0.9f, 1.0f}, .double_sided = true, .unlit = true});
+    const auto sheet = [&](ObjectId material, const std::array<glm::vec3, 4>& corners) {
         root.children.push_back(
-            add(scene::Geometry{.material = glass,
+            add(scene::Geometry{.material = material,
                                 .indices = blob(std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}),
                                 .positions = blob(std::vector<glm::vec3>(corners.begin(), corners.end()))}));
     };
-    pane({{{-0.9f, 1.7f, -0.9f}, {0.9f, 1.7f, -0.9f}, {0.9f, 1.7f, 0.9f}, {-0.9f, 1.7f, 0.9f}}});
-    pane({{{-0.5f, 1.5f, -0.5f}, {0.9f, 1.6f, -0.5f}, {0.9f, 1.6f, 0.9f}, {-0.5f, 1.5f, 0.9f}}});
-    pane({{{-0.9f, 0.1f, 0.8f}, {0.2f, 0.1f, 0.8f}, {0.2f, 1.3f, 0.8f}, {-0.9f, 1.3f, 0.8f}}});
+    sheet(glass, {{{-0.9f, 1.7f, -0.9f}, {0.9f, 1.7f, -0.9f}, {0.9f, 1.7f, 0.9f}, {-0.9f, 1.7f, 0.9f}}});
+    sheet(glass, {{{-0.5f, 1.5f, -0.5f}, {0.9f, 1.6f, -0.5f}, {0.9f, 1.6f, 0.9f}, {-0.5f, 1.5f, 0.9f}}});
+    sheet(glass, {{{-0.9f, 0.1f, 0.8f}, {0.2f, 0.1f, 0.8f}, {0.2f, 1.3f, 0.8f}, {-0.9f, 1.3f, 0.8f}}});
+    sheet(unlit, {{{-0.8f, 1.3f, -0.9f}, {0.7f, 1.3f, -0.9f}, {0.7f, 1.4f, 0.5f}, {-0.8f, 1.4f, 0.5f}}});
     entries.push_back(
         scene::Update{scene::RootId, scene::Fields<scene::Root>(&scene::Root::children).bits(), root});
     ASSERT_TRUE(scene.content.apply_entries(entries));
-    const Counts counts = measure("cornell with panes", scene, square_view(scene, Size));
+    const Counts counts = measure("cornell with panes and an unlit sheet", scene, square_view(scene, Size));
     EXPECT_LE(counts.vulkan, 3 * counts.control + 3);
 }
 

@@ -107,7 +107,7 @@ inline Surface medium_here(IN(Inputs) x) {
 inline uvec4 crossed_boundary(IN(Case) c, IN(Inputs) x) {
     uvec4 containing_media = no_media();
     MediumTraversal traversal = new_traversal(x.wo);
-    traversal.skip = Skip(0u, 0.0f, x.c % 2u == 0u ? 1e30f : 0.0f);
+    traversal.skip = Skip(0u, 0.0f, x.c % 2u == 0u ? 1e30f : 0.0f, false);
     Hit hit = c.hit;
     hit.instance = hit.instance % 4u;
     cross_boundary(in_media(c).scene, traversal, containing_media, hit, c.ray, 0.0f);

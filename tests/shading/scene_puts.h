@@ -211,7 +211,7 @@ inline void put(INOUT(Outputs) y, uvec4 v) {
 }
 inline void put(INOUT(Outputs) y, IN(Skip) skip) {
     put(y, skip.instance);
-    put(y, vec3(skip.near, skip.far, 1.0f));
+    put(y, vec3(skip.near, skip.far, skip.unlit ? 1.0f : 0.0f));
 }
 inline void put(INOUT(Outputs) y, IN(Boundary) boundary) {
     put(y, boundary.position);

@@ -59,7 +59,7 @@ inline bool trace_instance(IN(Context) context, uint index, IN(Instance) instanc
         if (!meets(instance, triangle_of(mesh, mesh.triangles.items[i]), origin, direction, skip.near, hit))
             continue;
         if (skips(skip, index, hit.distance)) continue;
-        if (instance.alpha_tested != 0u && !stops_at(context.scene, index, i, hit.barycentric, numbers))
+        if (instance.alpha_tested != 0u && !stops_at(context.scene, skip, index, i, hit.barycentric, numbers))
             continue;
         nearest = hit;
         nearest.instance = index;
@@ -92,7 +92,9 @@ inline bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float
                            OUT(bool) meets_walls) {
     meets_walls = false;
     Hit hit;
-    return trace_all(context, origin, segment, far, numbers, skip_nothing(), hit);
+    Skip skip = skip_nothing();
+    skip.unlit = true;
+    return trace_all(context, origin, segment, far, numbers, skip, hit);
 }
 
 SHADING_END

@@ -182,8 +182,9 @@ std::vector<RasterTest::Seen> RasterTest::seen_by_rays(const view::View& view, s
                         shading::seen_from(ray.origin, instance, corners.r));
                     if (!crossing.crosses || !(crossing.distance > 0.0f && crossing.distance < nearest))
                         continue;
-                    const bool stops = instance.alpha_tested == 0 ||
-                                       shading::stops_at(scene, i, t, crossing.barycentric, numbers);
+                    const bool stops =
+                        instance.alpha_tested == 0 || shading::stops_at(scene, shading::skip_nothing(), i, t,
+                                                                        crossing.barycentric, numbers);
                     if (!stops) continue;
                     nearest = crossing.distance;
                     seen = {instance.object, shading::depth_along(record, ray, nearest)};

@@ -17,7 +17,7 @@ bool stops(uvec2 pixel) {
     const Ray ray = camera_ray(view, pixel.x, pixel.y, raster_place(view, job.index));
     const Hit hit = raster_hit(scene, ray, ids.x, ids.y);
     const Path path = start_path(make_sampler(pixel.x, pixel.y, view.seed, job.index));
-    return stops_at(scene, hit.instance, hit.triangle, hit.barycentric, path_ray_numbers(path));
+    return stops_at(scene, skip_nothing(), hit.instance, hit.triangle, hit.barycentric, path_ray_numbers(path));
 }
 
 void main() {

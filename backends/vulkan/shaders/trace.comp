@@ -46,7 +46,7 @@ bool stops_ray(IN(Context) context, IN(Hit) candidate, IN(Sampler) numbers) {
         return false;
     }
     if ((Features & FeatureIndexMatchedMedia) != 0u && skips(context.skip, candidate.instance, candidate.distance)) return false;
-    return stops_at(context.scene, candidate.instance, candidate.triangle, candidate.barycentric, numbers);
+    return stops_at(context.scene, context.skip, candidate.instance, candidate.triangle, candidate.barycentric, numbers);
 }
 
 uint scene_question() {
@@ -68,6 +68,7 @@ bool trace_closest(IN(Context) context, IN(Ray) ray, IN(Sampler) numbers, IN(Ski
 bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, IN(Sampler) numbers, OUT(bool) meets_walls) {
     Context asked = context;
     asked.connects = true;
+    asked.skip.unlit = true;
     wall_is_met = false;
     const bool is_hit = find_hit(BvhItems(context.pool), context.top, origin, segment, NearestHit, far,
                                  BvhAny | scene_question(), seen_layers(context), context.time, asked, numbers)

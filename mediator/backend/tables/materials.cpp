@@ -234,7 +234,10 @@ void add_instances(SceneTables& tables, const FlatScene& flat_scene, const MeshC
         const shading::Material& record = tables.materials[instance.material];
         const bool is_thin_wall = (record.thin & shading::ThinClear) != 0;
         if (is_thin_wall) tables.scene.features |= shading::FeatureThinGlass;
-        instance.alpha_tested = record.alpha_mode != shading::AlphaOpaque || is_thin_wall ? 1u : 0u;
+        const bool is_unlit = record.unlit != 0;
+        if (is_unlit) tables.scene.features |= shading::FeatureAlpha;
+        instance.alpha_tested =
+            record.alpha_mode != shading::AlphaOpaque || is_thin_wall || is_unlit ? 1u : 0u;
         tables.scene.features |=
             record.surface_shader >= 0
                 ? features_of(record, tables.surface_shaders[static_cast<std::size_t>(record.surface_shader)])
