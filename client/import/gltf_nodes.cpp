@@ -13,6 +13,13 @@
 namespace tessera::import {
 namespace {
 
+// Of a light. Programs that export custom properties write truth values as integers, too.
+bool casts_no_hard_shadow(const tinygltf::Value& extras) {
+    if (!extras.IsObject() || !extras.Has("hard_shadow")) return false;
+    const tinygltf::Value& value = extras.Get("hard_shadow");
+    return value.IsBool() ? !value.Get<bool>() : value.IsInt() && value.GetNumberAsInt() == 0;
+}
+
 constexpr const char* Instancing = "EXT_mesh_gpu_instancing";
 constexpr const char* LightsExtension = "KHR_lights_punctual";
 
@@ -271,6 +278,8 @@ void GltfNodes::add_light(const tinygltf::Node& node, const std::string& name,
                 object_extras(model_.lights[static_cast<std::size_t>(index)].extras, LightExtras))
             read_extras(*own, *light, "light '" + light->name + "'", builder_);
         id = builder_.add(std::move(*light));
+        if (casts_no_hard_shadow(model_.lights[static_cast<std::size_t>(index)].extras))
+            builder_.mark_soft(id);
     }
     children.push_back(id);
 }

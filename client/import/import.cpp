@@ -59,6 +59,11 @@ void check_animations(SceneBuilder& builder) {
 void read_into(const std::filesystem::path& file, SceneBuilder& builder) {
     const std::string extension = lower_case_extension(file);
     if (extension == ".tessera") {
+        const ImportOptions& options = builder.options();
+        if (options.soft_lights_as_sky || !options.lights_as_sky.empty())
+            throw Error(
+                ErrorCode::InvalidInput,
+                "lights can be left out only of imported files, not of saved scenes: hide them instead");
         import_tessera(file, builder);
         return check_animations(builder);
     }

@@ -48,6 +48,10 @@ struct ImportOptions {
     Motion motion = Motion::Still;
     Glass glass = Glass::Thin;
     LightUnits light_units = LightUnits::Physical;
+    // Lights to leave out for speed, the sky being raised by their irradiance: these, by name, and those of a glTF file
+    // with the extras {"hard_shadow": false}.
+    std::vector<std::string> lights_as_sky;
+    bool soft_lights_as_sky = false;
     // Width / height of the picture for which a missing camera is framed; wider pictures show everything,
     // too.
     double aspect_ratio = 1.0;

@@ -6,6 +6,7 @@
 #include "client/import/default_environment.h"
 #include "client/import/environment.h"
 #include "client/import/framing.h"
+#include "client/import/lights_as_sky.h"
 #include "client/import/scene_stats.h"
 #include "mediator/scene/field_notes.h"
 
@@ -67,6 +68,7 @@ void post_process(SceneBuilder& builder, scene::Background of_file) {
         background.strength = options.environment_strength;
         background.rotation = options.environment_rotation;
     }
+    replace_lights_by_sky(builder, stats, background);
     const bool has_light = result.counts.lights > 0 || background.color != glm::vec3(0.0f) ||
                            background.environment || options.background;
     if (may_add && !has_light && !stats.emissive_lights.are_significant(stats.bounds)) {

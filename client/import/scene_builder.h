@@ -55,6 +55,10 @@ class SceneBuilder {
     ObjectId placeholder_geometry();
     ObjectId placeholder_texture();
 
+    // The file marks the light as one that casts no hard shadow.
+    void mark_soft(ObjectId light) { soft_lights_.insert(light); }
+    const std::set<ObjectId>& soft_lights() const { return soft_lights_; }
+
     void notice(const std::string& text);  // each once
     const Bounds& bounds(ObjectId geometry) const { return bounds_.at(geometry); }
 
@@ -68,6 +72,7 @@ class SceneBuilder {
     std::map<scene::ObjectKind, std::uint64_t> added_;
     std::unordered_map<Hash256, scene::BlobPtr> blobs_;
     std::unordered_map<ObjectId, Bounds> bounds_;
+    std::set<ObjectId> soft_lights_;
     std::set<std::string> notices_;
     std::uint64_t decoded_bytes_ = 0;
     ObjectId placeholder_geometry_, placeholder_texture_;

@@ -29,6 +29,7 @@ class StatsCollector {
         std::sort(cameras_.begin(), cameras_.end(),
                   [](const auto& a, const auto& b) { return a.first < b.first; });
         for (auto& [unused, camera] : cameras_) stats_.cameras.push_back(std::move(camera));
+        builder_.result().counts.lights = stats_.lights.size();
         builder_.result().counts.emissive_geometries = emissive_.size();
         return std::move(stats_);
     }
@@ -58,7 +59,7 @@ class StatsCollector {
         for (const ObjectId child : transform.children) {
             const scene::Object& below = object(child);
             if (std::holds_alternative<scene::Geometry>(below) && visible) place_geometry(child, world);
-            if (std::holds_alternative<scene::Light>(below)) ++builder_.result().counts.lights;
+            if (std::holds_alternative<scene::Light>(below)) stats_.lights.push_back({child, world});
             if (const auto* camera = std::get_if<scene::Camera>(&below)) place_camera(child, *camera, world);
         }
         enter(transform.children, world);

@@ -6,11 +6,17 @@
 
 namespace tessera::import {
 
+struct LightInstance {
+    ObjectId id;
+    glm::dmat4 world{1.0};
+};
+
 // Statistics of the complete graph.
 struct SceneStats {
-    Bounds bounds;                    // world bounds of all instances
-    std::vector<CameraInfo> cameras;  // by object id, that is in file order
-    EmissiveLights emissive_lights;   // of all instances of emissive geometries
+    Bounds bounds;                      // world bounds of all instances
+    std::vector<CameraInfo> cameras;    // by object id, that is in file order
+    std::vector<LightInstance> lights;  // all instances
+    EmissiveLights emissive_lights;     // of all instances of emissive geometries
 };
 
 // Sets the counts of instances, lights and emissive geometries. Removes geometries from transforms all of

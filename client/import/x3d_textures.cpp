@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "client/import/image_decoder.h"
+#include "client/import/limits.h"
 #include "client/import/x3d_fields.h"
 
 namespace tessera::import {
@@ -75,6 +76,16 @@ X3dTextures::Traits X3dTextures::traits(pugi::xml_node image) {
     return found.picture ? found.picture->traits : Traits{};
 }
 
+// Of data, as in glTF files: steps of eight bits are seen in mirrors.
+void X3dTextures::keep_sixteen_bits(scene::Texture& texture, const std::string& file) const {
+    const auto bytes = folder_.read(file);
+    if (!bytes) return;
+    const auto image = picture::read_png16(std::as_bytes(std::span(*bytes)), ImageLimits);
+    if (!image || !*image) return;
+    texture.format = scene::TexelFormat::RgbFloat;
+    texture.texels = builder_.blob((*image)->values);
+}
+
 ObjectId X3dTextures::texture(pugi::xml_node image, TextureUse use, const std::string& owner) {
     const Found& found = this->found(image);
     const X3dFields fields(image, document_.diagnostics());
@@ -94,6 +105,7 @@ ObjectId X3dTextures::texture(pugi::xml_node image, TextureUse use, const std::s
     texture.wrap_s = fields.flag("repeatS", true) ? scene::Wrap::Repeat : scene::Wrap::Clamp;
     texture.wrap_t = fields.flag("repeatT", true) ? scene::Wrap::Repeat : scene::Wrap::Clamp;
     texture.texels = found.picture->texels;
+    if (use == TextureUse::Data) keep_sixteen_bits(texture, found.name);
     result = builder_.add(std::move(texture));
     ++builder_.result().counts.textures;
     return result;

@@ -42,6 +42,7 @@ class X3dTextures {
     const Found& found(pugi::xml_node image);
     const Expected<Picture>& decoded(const std::string& name);
     Expected<Picture> decode(const std::string& name);
+    void keep_sixteen_bits(scene::Texture& texture, const std::string& file) const;
 
     X3dDocument& document_;
     LocalFolder folder_;

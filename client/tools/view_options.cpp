@@ -60,6 +60,8 @@ Expected<void> set_import(const ViewOptions& options, import::ImportOptions& imp
     import.environment_rotation =
         static_cast<float>(std::remainder(options.environment_rotation, 360.0) * (std::numbers::pi / 180.0));
     if (options.solid_glass) import.glass = import::Glass::Solid;
+    import.lights_as_sky = options.lights_as_sky;
+    import.soft_lights_as_sky = options.soft_lights_as_sky;
     if (options.light_units == "blender") import.light_units = import::LightUnits::Blender;
     return {};
 }
@@ -118,6 +120,14 @@ void ViewOptions::add_to(cli::CommandLine& command) {
         "blender: files exported by Blender, as bright as there compared with its emissive surfaces and sky "
         "(1/683)",
         light_units, {"physical", "blender"});
+    command.option("--light-as-sky",
+                   "leave out this light for speed, by its name in the file, and make the sky brighter by "
+                   "its irradiance "
+                   "instead; may be given several times",
+                   lights_as_sky);
+    command.flag("--soft-lights-as-sky",
+                 "the same for all lights of a glTF file that have the extras {\"hard_shadow\": false}",
+                 soft_lights_as_sky);
     command.option(
         "--bounces",
         "maximum path depth: diffuse and glossy scattering events after the first hit; 0 = direct light only",

@@ -20,9 +20,9 @@ struct ViewOptions {
     std::optional<std::string> camera, background, environment, crop, layers, animation;
     std::optional<double> at, lens_radius, focus, orthographic, shutter;
     std::string aperture;
-    std::vector<std::string> hidden, materials;
+    std::vector<std::string> hidden, materials, lights_as_sky;
     double environment_strength = 1.0, environment_rotation = 0.0;
-    bool solid_glass = false;
+    bool solid_glass = false, soft_lights_as_sky = false;
     std::string light_units = "physical";
     std::uint32_t bounces = 8, specular_bounces = 32;
     std::string pixel_filter = "box";

@@ -1,3 +1,4 @@
+#include "mediator/picture/png_writer.h"
 #include "mediator/scene/fields.h"
 #include "tests/import/x3d_file.h"
 
@@ -12,6 +13,9 @@ ImportedScene read_appearance(const std::string& nodes, const std::string& versi
     for (const char* name : {"a", "b", "c"})
         folder.write(name + std::string(".png"), png(1, 1, {200, 100, 50, 255}));
     folder.write("grey.png", png(1, 1, {200, 200, 200, 255}));
+    const std::vector<std::byte> deep =
+        picture::encode_png16(1, 1, std::vector<float>{0.5f, 12345.0f / 65535.0f, 1.0f});
+    folder.write("deep.png", {reinterpret_cast<const char*>(deep.data()), deep.size()});
     folder.write("clear.png", png(1, 1, {200, 100, 50, 128}));
     ImportedScene scene = loaded(folder.write(
         "a.x3d", x3d("<Shape><Appearance>" + nodes + "</Appearance>" + geometry + "</Shape>", version)));
@@ -62,6 +66,18 @@ TEST(X3dSurfaceShader, DefaultsThatAreWrittenOutChangeNothing) {
         "fresnelBlend='1.0' tangentTextureCoordinatesId='-1' binormalTextureCoordinatesId='-1' "
         "environmentFactor='0 0 0'/>");
     EXPECT_THAT(differences(only<scene::SurfaceShader>(scene), scene::SurfaceShader{}), testing::IsEmpty());
+}
+
+TEST(X3dSurfaceShader, SixteenBitsOfDataAreKept) {
+    const ImportedScene scene = read_appearance(
+        "<CommonSurfaceShader><ImageTexture containerField='normalTexture' url='deep.png'/>"
+        "<ImageTexture containerField='diffuseTexture' url='deep.png'/></CommonSurfaceShader>");
+    const auto shader = only<scene::SurfaceShader>(scene);
+    const auto& normals = object<scene::Texture>(scene, shader.normal_texture.texture);
+    EXPECT_EQ(object<scene::Texture>(scene, shader.diffuse_texture.texture).format,
+              scene::TexelFormat::Rgba8Srgb);
+    ASSERT_EQ(normals.format, scene::TexelFormat::RgbFloat);
+    EXPECT_NEAR(values<float>(scene, normals.texels)[1], 12345.0f / 65535.0f, 1e-7f);
 }
 
 TEST(X3dSurfaceShader, EveryFieldIsRead) {
