@@ -47,9 +47,9 @@ done
 run light.txt "$bin/tessera_light_bench" trees
 run fog.txt "$bin/tessera_light_bench" fog
 run skies.txt "$bin/tessera_light_bench" skies
-run filters.json "$bin/tessera" bench filters -o "$out/filters" --scenes room-1,studio-1,still --spp 4 --large none \
+run filters.json "$bin/tessera" bench filters -o "$out/filters" --scenes room-1,studio-1,interior-1,still --spp 4 --large none \
     --reference-spp 512 --json
-run backends.txt "$bin/tessera" bench backends --scenes room-1,studio-1,balls:1000000 --spp 4 --repeat 3
+run backends.txt "$bin/tessera" bench backends --scenes room-1,studio-1,interior-1,balls:1000000 --spp 4 --repeat 3
 run live.txt "$bin/tessera" bench live
 run wire.txt /usr/bin/python3 tests/bench/wire/wire_bench.py --bin "$bin" --spp 16 --pairs 5 --no-targets
 run displays.txt "$bin/tessera" bench displays

@@ -22,6 +22,9 @@ constexpr std::array Files{
     SceneFile{"room-1", "indirect light", "closed textured room lit over its ceiling", "room-1.glb", ""},
     SceneFile{"studio-1", "glossy surfaces", "metals and coated paint between soft boxes", "studio-1.glb",
               ""},
+    SceneFile{"interior-1", "interior",
+              "room lit through panes, with masked leaves, normal maps and a mirrored vase", "interior-1.glb",
+              "env-noon.exr"},
     SceneFile{"still", "environment light", "still life with glass and copper in a studio's light",
               "still.glb", "env-studio.exr"},
 };
