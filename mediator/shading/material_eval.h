@@ -47,7 +47,7 @@ inline void add_extras(INOUT(MaterialSample) material_sample, IN(Scene) scene, u
     for (uint i = 0u; i < count; ++i) {
         texels[i] = texel_or_white(scene, scene.extras.items[index].textures[i], mesh, corners, b);
     }
-    const MaterialExtras extras = scene.extras.items[index];
+    CONST_REF(MaterialExtras) extras = scene.extras.items[index];
     material_sample.specular = extras.specular * texels[ExtrasSpecular].w;
     material_sample.specular_color = extras.specular_color * vec3(texels[ExtrasSpecularColor]);
     material_sample.transmission *= texels[ExtrasTransmission].x;

@@ -61,12 +61,10 @@ inline vec3 corner_normal(IN(Mesh) mesh, uint corner) {
 inline constexpr float SmoothCosine = 0.7f, EdgyCosine = 0.5f;
 
 // From the triangle's point to the smooth surface, in the object's frame: the mean of its projections on the
-// tangent planes of the corners, where these are above it, seen from the side of `side` x the normals (Hanika
-// 2021, Hacking the Shadow Terminator). Rays that leave from there are not blocked by the flat triangles around,
+// tangent planes of the corners with these normals, where they are above it, seen from the side of `side` x the normals
+// (Hanika 2021, Hacking the Shadow Terminator). Rays that leave from there are not blocked by the flat triangles around,
 // so no light is lost that arrives above the shading normal's horizon.
-inline vec3 smooth_lift(IN(Mesh) mesh, IN(Triangle) t, uvec3 corners, vec2 b, float side) {
-    const vec3 n0 = corner_normal(mesh, corners.x), n1 = corner_normal(mesh, corners.y),
-               n2 = corner_normal(mesh, corners.z);
+inline vec3 smooth_lift(IN(Triangle) t, vec3 n0, vec3 n1, vec3 n2, vec2 b, float side) {
     const float turn = lesser_of(dot(n0, n1), lesser_of(dot(n1, n2), dot(n2, n0)));
     const float share = clamp((turn - EdgyCosine) / (SmoothCosine - EdgyCosine), 0.0f, 1.0f) * side;
     const vec3 pq = t.q - t.p, pr = t.r - t.p;

@@ -49,14 +49,14 @@ inline uint scramble_reversed(uint x, uint seed) {
     return x ^ x * 0x53a22864u;
 }
 
-// The second Sobol dimension (x + 1) of a reversed index: Pascal's triangle modulo 2, doubled five times
-// (Ahmed 2024). The first dimension is the reversed index itself.
-inline uint sobol_second(uint reversed) {
-    reversed ^= reversed << 16;
-    reversed ^= (reversed & 0x00ff00ffu) << 8;
-    reversed ^= (reversed & 0x0f0f0f0fu) << 4;
-    reversed ^= (reversed & 0x33333333u) << 2;
-    return reversed ^ (reversed & 0x55555555u) << 1;
+// The second Sobol dimension (x + 1) of an index, its bits reversed: Pascal's triangle modulo 2, doubled five times
+// (Ahmed 2024). The first dimension, reversed, is the index itself.
+inline uint sobol_second_reversed(uint index) {
+    index ^= index >> 16;
+    index ^= (index >> 8) & 0x00ff00ffu;
+    index ^= (index >> 4) & 0x0f0f0f0fu;
+    index ^= (index >> 2) & 0x33333333u;
+    return index ^ ((index >> 1) & 0x55555555u);
 }
 
 inline float unit_float(uint bits) {
@@ -72,10 +72,9 @@ inline Sampler make_sampler(uint x, uint y, uint64_t seed, uint64_t index) {
 
 inline vec2 sample_pair(IN(Sampler) numbers, uint pair) {
     const uint seed = hash_combine(numbers.seed, pair);
-    const uint reversed = scramble_reversed(reverse_bits(numbers.index), seed);
-    const uint x = reverse_bits(scramble_reversed(reverse_bits(reversed), hash_combine(seed, 1u)));
-    const uint y =
-        reverse_bits(scramble_reversed(reverse_bits(sobol_second(reversed)), hash_combine(seed, 2u)));
+    const uint index = reverse_bits(scramble_reversed(reverse_bits(numbers.index), seed));
+    const uint x = reverse_bits(scramble_reversed(index, hash_combine(seed, 1u)));
+    const uint y = reverse_bits(scramble_reversed(sobol_second_reversed(index), hash_combine(seed, 2u)));
     return vec2(unit_float(x), unit_float(y));
 }
 

@@ -88,7 +88,7 @@ inline mat3 shading_frame(IN(Scene) scene, IN(Instance) instance, IN(Mesh) mesh,
         return mat3(x, cross(normal, x), normal);
     }
     if (!has_extras(scene, material)) return frame_around(normal);
-    const MaterialExtras extras = scene.extras.items[material.extras];
+    CONST_REF(MaterialExtras) extras = scene.extras.items[material.extras];
     if (!(extras.anisotropy > 0.0f)) return frame_around(normal);
     const vec4 tangent4 = tangent_at(instance, mesh, corners, b, normal);
     if (tangent4.w == 0.0f) return frame_around(normal);
@@ -194,7 +194,8 @@ inline float emission_transmittance(IN(Scene) scene, IN(Instance) instance, IN(M
                                     IN(Material) material, IN(Triangle) t, uvec3 corners, vec2 b, vec3 face,
                                     vec3 direction) {
     if ((scene.features & (FeatureCoat | FeatureSheen)) == 0u || !has_extras(scene, material)) return 1.0f;
-    const MaterialExtras extras = scene.extras.items[material.extras];
+    CONST_REF(MaterialExtras) extras = scene.extras.items[material.extras];
+    if (!(extras.coat > 0.0f || largest(extras.sheen_color) > 0.0f)) return 1.0f;
     vec4 texels[4];
     NO_UNROLL
     for (uint i = 0u; i < 4u; ++i)
@@ -238,7 +239,7 @@ inline void set_scattering(INOUT(Surface) surface, IN(Scene) scene, IN(Instance)
     MaterialSample material_sample =
         evaluate_material(scene, material, mesh, corners, b, surface.albedo, front, n);
     if ((material_sample.lobes & FeatureCoat) != 0u) {
-        const MaterialExtras extras = scene.extras.items[material.extras];
+        CONST_REF(MaterialExtras) extras = scene.extras.items[material.extras];
         const vec3 mapped =
             mapped_normal(scene, instance, mesh, extras.coat_normal_texture, extras.coat_normal_scale,
                           corners, b, vertex_normal(instance, mesh, corners, b, face));
@@ -258,10 +259,11 @@ inline void lift_surface(INOUT(Surface) surface, IN(Instance) instance, IN(Mesh)
     surface.is_lifted = false;
     if ((mesh.arrays & MeshNormals) == 0u || !surface.scatters || surface.medium != NoInstance) return;
     if (material.surface_shader >= 0 || material.transmission > 0.0f || emits(material)) return;
-    const vec3 mean =
-        corner_normal(mesh, corners.x) + corner_normal(mesh, corners.y) + corner_normal(mesh, corners.z);
-    const bool outwards = dot(mean, cross(t.q - t.p, t.r - t.p)) > 0.0f;
-    const vec3 lift = instance.linear * smooth_lift(mesh, t, corners, b, outwards == front ? 1.0f : -1.0f);
+    const vec3 n0 = corner_normal(mesh, corners.x), n1 = corner_normal(mesh, corners.y),
+               n2 = corner_normal(mesh, corners.z);
+    if (n0 == n1 && n1 == n2) return;  // flat
+    const bool outwards = dot(n0 + n1 + n2, cross(t.q - t.p, t.r - t.p)) > 0.0f;
+    const vec3 lift = instance.linear * smooth_lift(t, n0, n1, n2, b, outwards == front ? 1.0f : -1.0f);
     if (!(dot(lift, surface.geometric_normal) > 0.0f)) return;
     surface.lift = lift;
     surface.is_lifted = true;

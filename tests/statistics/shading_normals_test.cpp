@@ -141,11 +141,9 @@ TEST(NormalMap, LosesWhatLeadsBelowTheFace) {
 TEST(SmoothMesh, IsNoBoxWithMeanNormals) {
     const glm::vec3 normals[] = {glm::normalize(glm::vec3(-1, -1, 1)), glm::normalize(glm::vec3(1, -1, 1)),
                                  glm::normalize(glm::vec3(1, 1, 1))};
-    shading::Mesh mesh{};
-    mesh.normals.items = normals;
-    mesh.arrays = shading::MeshNormals;
     const shading::Triangle triangle{{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}};
-    EXPECT_EQ(shading::smooth_lift(mesh, triangle, {0, 1, 2}, {0.3f, 0.3f}, 1.0f), glm::vec3(0.0f));
+    EXPECT_EQ(shading::smooth_lift(triangle, normals[0], normals[1], normals[2], {0.3f, 0.3f}, 1.0f),
+              glm::vec3(0.0f));
 }
 
 // In the middle of a sphere's chord of 30 degrees each tangent plane is sin^2 of half the angle above it. At any
@@ -155,17 +153,13 @@ TEST(SmoothMesh, IsLiftedToTheTangentPlanes) {
         const double half = glm::radians(15.0);
         const glm::vec3 left(-float(std::sin(half)), 0.0f, float(std::cos(half)));
         const glm::vec3 right(-left.x, 0.0f, left.z);
-        const glm::vec3 normals[] = {left, right, right};
-        shading::Mesh mesh{};
-        mesh.normals.items = normals;
-        mesh.arrays = shading::MeshNormals;
         const shading::Triangle triangle{left * radius, right * radius,
                                          (right + glm::vec3(0, 1, 0)) * radius};
-        const glm::vec3 lift = shading::smooth_lift(mesh, triangle, {0, 1, 2}, {0.5f, 0.0f}, 1.0f);
+        const glm::vec3 lift = shading::smooth_lift(triangle, left, right, right, {0.5f, 0.0f}, 1.0f);
         const double expected = std::sin(half) * std::sin(half) * std::cos(half);
         EXPECT_NEAR(lift.z / radius, expected, 1e-6) << radius;
         EXPECT_NEAR(lift.x / radius, 0.0, 1e-6) << radius;
-        EXPECT_EQ(shading::smooth_lift(mesh, triangle, {0, 1, 2}, {0.5f, 0.0f}, -1.0f), glm::vec3(0.0f));
+        EXPECT_EQ(shading::smooth_lift(triangle, left, right, right, {0.5f, 0.0f}, -1.0f), glm::vec3(0.0f));
     }
 }
 
