@@ -13,19 +13,23 @@
 namespace tessera::import {
 namespace {
 
-// Of a light. Programs that export custom properties write truth values as integers, too.
-bool casts_no_hard_shadow(const tinygltf::Value& extras) {
-    if (!extras.IsObject() || !extras.Has("hard_shadow")) return false;
-    const tinygltf::Value& value = extras.Get("hard_shadow");
-    return value.IsBool() ? !value.Get<bool>() : value.IsInt() && value.GetNumberAsInt() == 0;
-}
-
 constexpr const char* Instancing = "EXT_mesh_gpu_instancing";
 constexpr const char* LightsExtension = "KHR_lights_punctual";
 
 std::string display_name(const tinygltf::Model& model, int node) {
     const std::string& name = model.nodes[static_cast<std::size_t>(node)].name;
     return name.empty() ? "node " + std::to_string(node) : name;
+}
+
+// Programs that export custom properties write booleans as numbers, too.
+bool casts_no_hard_shadow(const tinygltf::Light& light, SceneBuilder& builder) {
+    if (!light.extras.IsObject() || !light.extras.Has("hard_shadow")) return false;
+    const tinygltf::Value& value = light.extras.Get("hard_shadow");
+    if (value.IsBool()) return !value.Get<bool>();
+    if (value.IsNumber()) return value.GetNumberAsDouble() == 0.0;
+    builder.notice("light '" + light.name +
+                   "': its extra hard_shadow is neither a boolean nor a number: it is ignored");
+    return false;
 }
 
 bool has_only_a_mesh(const tinygltf::Node& node) {
@@ -278,7 +282,7 @@ void GltfNodes::add_light(const tinygltf::Node& node, const std::string& name,
                 object_extras(model_.lights[static_cast<std::size_t>(index)].extras, LightExtras))
             read_extras(*own, *light, "light '" + light->name + "'", builder_);
         id = builder_.add(std::move(*light));
-        if (casts_no_hard_shadow(model_.lights[static_cast<std::size_t>(index)].extras))
+        if (casts_no_hard_shadow(model_.lights[static_cast<std::size_t>(index)], builder_))
             builder_.mark_soft(id);
     }
     children.push_back(id);

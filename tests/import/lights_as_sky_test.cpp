@@ -14,7 +14,7 @@ namespace {
 using std::numbers::pi;
 
 // A mesh within a ball of radius 1 and three lights: a sun, and two lamps at a distance of 2 and 1000.
-SceneFile lit_file(const std::string& sunlight = "4") {
+SceneFile lit_file(const std::string& sunlight = "4", const std::string& hard = "true") {
     SceneFile file;
     const float edge = 1.0f / std::sqrt(3.0f);
     const int at = file.positions({{-edge, -edge, -edge}, {edge, edge, edge}, {edge, -edge, edge}});
@@ -22,9 +22,9 @@ SceneFile lit_file(const std::string& sunlight = "4") {
     file.set("extensionsUsed", R"(["KHR_lights_punctual"])");
     file.set("extensions", R"({"KHR_lights_punctual":{"lights":[
         {"type":"directional","name":"sun","intensity":)" +
-                               sunlight + R"(,"color":[1,0.5,0.25],"extras":{"hard_shadow":true}},
+                               sunlight + R"(,"color":[1,0.5,0.25],"extras":{"hard_shadow":)" + hard + R"(}},
         {"type":"point","name":"lamp","intensity":8,"extras":{"hard_shadow":false}},
-        {"type":"spot","name":"spot","intensity":1e6,"extras":{"hard_shadow":0},
+        {"type":"spot","name":"spot","intensity":1e6,"extras":{"hard_shadow":0.0},
          "spot":{"innerConeAngle":0.2,"outerConeAngle":0.5}}]}})");
     file.add("nodes", R"({"mesh":0})");
     for (int light = 0; light < 3; ++light) {
@@ -97,12 +97,35 @@ TEST(LightsAsSky, NamesWhatItCannotFind) {
     EXPECT_NE(std::string(blinding.error().what()).find("too bright for a sky"), std::string::npos)
         << blinding.error().what();
 
+    const auto saved = import_scene(folder.write("saved.tessera", "anything"), options);
+    ASSERT_FALSE(saved);
+    EXPECT_NE(std::string(saved.error().what()).find("not of saved scenes"), std::string::npos)
+        << saved.error().what();
+
     SceneFile dark;
     dark.add_triangle();
     options = {};
     options.soft_lights_as_sky = true;
     EXPECT_TRUE(
         has_notice(loaded(folder.write("dark.glb", dark.glb()), options), "no light of it is marked"));
+}
+
+TEST(LightsAsSky, IgnoresMarksOfAnotherTypeWithANotice) {
+    const TestFolder folder;
+    ImportOptions options;
+    options.soft_lights_as_sky = true;
+    const ImportedScene scene = loaded(folder.write("scene.glb", lit_file("4", R"("no")").glb()), options);
+    EXPECT_EQ(scene.counts.lights, 1u) << "the sun";
+    EXPECT_TRUE(has_notice(scene, "light 'sun': its extra hard_shadow is neither a boolean nor a number"));
+}
+
+// Of its flux, pi x intensity, a quad has a quarter of a point light's.
+TEST(LightsAsSky, CountsTheFluxOfQuads) {
+    const Bounds bounds{glm::dvec3(-1.0), glm::dvec3(1.0)};
+    const glm::dmat4 place = glm::translate(glm::dmat4(1.0), {0.0, 3.0, 0.0});
+    const scene::Light point{.intensity = glm::vec3(1.0f)};
+    const scene::Light quad{.kind = scene::LightKind::Quad, .intensity = glm::vec3(1.0f)};
+    EXPECT_DOUBLE_EQ(radiance_as_sky(quad, place, bounds).x, 0.25 * radiance_as_sky(point, place, bounds).x);
 }
 
 // By a sum over a grid of the ball, from its center to far away; the light may be in it.

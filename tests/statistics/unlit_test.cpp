@@ -49,7 +49,7 @@ TEST(Unlit, DomesNeitherLightNorHideTheSky) {
 }
 
 TEST(Unlit, SheetsCastNoShadow) {
-    Model sunny, lamplit, domed;
+    Model sunny, lamplit;
     for (Model* model : {&sunny, &lamplit}) {
         model->floor(model->material(chalk(glm::vec3(Chalk))), 5.0f, 0.0f);
         model->floor(model->material(unlit(glm::vec3(0.5f))), 5.0f, 1.0f);
