@@ -164,7 +164,8 @@ TEST(Separable, ComesCloserToBruteForceWithSamplesAndIsAsGood) {
     }
 }
 
-TEST(Separable, IsSeveralTimesFasterThanBruteForce) {
+// By the shortest of many times: others who use the caches make single ones longer, and not both methods alike.
+TEST(Separable, IsFiveTimesFasterThanBruteForce) {
     const Inputs inputs =
         synthetic_inputs(192, 192, 4, [](std::uint32_t x, std::uint32_t y, std::uint64_t i) {
             return shadowed_texture(192, 192, x, y, i);
@@ -186,10 +187,12 @@ TEST(Separable, IsSeveralTimesFasterThanBruteForce) {
         return tessera::test::thread_cpu_seconds() - start;
     };
     Method brute = make("pixel:method=brute,adaptive=off"), separable = make("pixel:adaptive=off");
-    std::vector<double> ratios;
-    for (int i = 0; i < 15; ++i) ratios.push_back(seconds_of(brute) / seconds_of(separable));
-    std::ranges::nth_element(ratios, ratios.begin() + 7);
-    EXPECT_GT(ratios[7], 3.0);  // 5.3 to 6.2 on a quiet machine; less where others use the caches
+    double shortest_brute = 1e9, shortest_separable = 1e9;
+    for (int i = 0; i < 25; ++i) {
+        shortest_brute = std::min(shortest_brute, seconds_of(brute));
+        shortest_separable = std::min(shortest_separable, seconds_of(separable));
+    }
+    EXPECT_GT(shortest_brute / shortest_separable, 5.0);
 }
 
 // Two regions and a mixed column between them.
