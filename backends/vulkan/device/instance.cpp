@@ -25,6 +25,17 @@ Function find_function(VkInstance instance, const char* name) {
     return reinterpret_cast<Function>(vkGetInstanceProcAddr(instance, name));
 }
 
+// An instance that is never destroyed, so that the drivers stay loaded: NVIDIA's (580.159) takes thread-local storage
+// each time it is loaded, and cannot be loaded for the 31st time. If this fails, so will the instance that is wanted.
+void keep_drivers_loaded(const VkInstanceCreateInfo& info) {
+    static const VkInstance kept = [&] {
+        VkInstance instance = VK_NULL_HANDLE;
+        vkCreateInstance(&info, nullptr, &instance);
+        return instance;
+    }();
+    static_cast<void>(kept);
+}
+
 }  // namespace
 
 Instance::Instance(Validation validation, MessageListener listener)
@@ -35,6 +46,7 @@ Instance::Instance(Validation validation, MessageListener listener)
                                         .apiVersion = VK_API_VERSION_1_3};
     VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
                               .pApplicationInfo = &application};
+    keep_drivers_loaded(info);
     if (validation == Validation::None) {
         check(vkCreateInstance(&info, nullptr, &instance_), "create a Vulkan instance");
         return;
