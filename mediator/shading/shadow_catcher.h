@@ -16,9 +16,10 @@ inline bool is_shadow_catcher(IN(Scene) scene, IN(Surface) surface) {
     return (scene.features & FeatureShadowCatcher) != 0u && surface.light == ShadowCatcher;
 }
 
-// Alpha of a background behind a medium: 1 minus what is transmitted.
+// Alpha of a background behind a medium: 1 minus what is transmitted. Exactly `alpha` without a medium, so not to be
+// contracted: three times a third is more than 1.
 inline float seen_through(IN(Path) path, float alpha) {
-    const float passed = (path.throughput.x + path.throughput.y + path.throughput.z) * (1.0f / 3.0f);
+    PRECISE const float passed = (path.throughput.x + path.throughput.y + path.throughput.z) * (1.0f / 3.0f);
     return 1.0f - (1.0f - alpha) * passed;
 }
 
