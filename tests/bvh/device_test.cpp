@@ -14,6 +14,9 @@ namespace {
 
 using shading::Hit;
 
+// Of each of these rays, one is aimed at a corner.
+constexpr std::size_t AimedEvery = 4;
+
 std::vector<TestRay> rays_through(const TracedScene& scene, std::uint32_t count) {
     CounterRandom random(51);
     std::vector<TestRay> rays;
@@ -21,7 +24,7 @@ std::vector<TestRay> rays_through(const TracedScene& scene, std::uint32_t count)
     for (std::uint32_t i = 0; i < count; ++i) {
         const glm::vec3 origin = random_point(random, -30.0f, 30.0f);
         glm::vec3 target = random_point(random, -25.0f, 25.0f);
-        if (i % 4 == 0) target = mesh.positions[random.below(mesh.positions.size())];
+        if (i % AimedEvery == 0) target = mesh.positions[random.below(mesh.positions.size())];
         glm::vec3 direction = target - origin;
         if (i % 16 == 1) direction = glm::vec3(0.0f, i % 32 == 1 ? -0.0f : 0.0f, 1.0f);
         rays.push_back({.origin = origin, .direction = direction, .far = i % 3 == 0 ? 0.9f : INFINITY});
@@ -57,24 +60,27 @@ class DeviceTrace : public VulkanTest {
         const std::vector<Hit> by_address = trace(scene, rays, Traversal::Address, question);
         const std::vector<Hit> as_texels = trace(scene, rays, Traversal::Texels, question);
         const std::vector<Hit> plain = trace(scene, rays, Traversal::Bvh2, question);
-        std::uint32_t hits = 0, different = 0, other_bits = 0;
+        std::uint32_t hits = 0, different = 0, different_at_corners = 0, other_bits = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const Hit &found = as_texels[i], here = scene.trace(rays[i], question);
             ASSERT_TRUE(same_bits(found, by_address[i]));
             ASSERT_TRUE(any ? missed(found) == missed(plain[i]) : same_bits(found, plain[i]));
             hits += missed(here) ? 0 : 1;
             other_bits += same_bits(here, found) ? 0 : 1;
-            if (missed(here) != missed(found)) {
-                ++different;
+            const bool same_triangle = here.instance == found.instance && here.triangle == found.triangle;
+            if (missed(here) != missed(found) || (!any && !same_triangle)) {
+                ++(i % AimedEvery == 0 ? different_at_corners : different);
             } else if (!any && !missed(here)) {
-                different += here.instance != found.instance || here.triangle != found.triangle ? 1 : 0;
                 EXPECT_NEAR(found.distance / here.distance, 1.0f, 1e-2f);
             }
         }
         EXPECT_GT(hits, 20'000u);
-        // A device's division may be off by 2.5 ulp, which shows at edges. Lavapipe: 0 and 0.
+        // A device's division may be off by 2.5 ulp, which shows at edges and most at corners. Lavapipe: 0 and 0; an
+        // NVIDIA H200: 2.5 % of the rays that are aimed at corners.
         EXPECT_LE(different, 20u);
+        EXPECT_LE(different_at_corners, rays.size() / AimedEvery / 20);
         RecordProperty("different", static_cast<int>(different));
+        RecordProperty("different_at_corners", static_cast<int>(different_at_corners));
         RecordProperty("other_bits", static_cast<int>(other_bits));
     }
 };

@@ -10,6 +10,8 @@ namespace tessera::shading {
 namespace {
 
 constexpr double Infinite = std::numeric_limits<double>::infinity();
+// Devices may flush what is smaller than 2^-126, and with it larger numbers that are calculated from it.
+constexpr double Least = 0x1p-112;
 
 bool has(const uvec2& mask, uint place) {
     return (mask[int(place / 32)] >> place % 32 & 1u) != 0u;
@@ -17,14 +19,14 @@ bool has(const uvec2& mask, uint place) {
 
 double ulp_of(double size) {
     int exponent = 0;
-    std::frexp(std::max(size, 0x1p-126), &exponent);
+    std::frexp(std::max(size, Least), &exponent);
     return std::ldexp(1.0, exponent - 24);
 }
 
 double difference_of(float a, float b, double ulp) {
     if (float_bits(a) == float_bits(b) || (is_nan(a) && is_nan(b))) return 0.0;
     if (is_nan(a) || is_nan(b)) return Infinite;
-    const auto flushed = [](float value) { return std::fabs(value) < 0x1p-126f ? 0.0 : double(value); };
+    const auto flushed = [](float value) { return std::fabs(double(value)) < Least ? 0.0 : double(value); };
     // Infinity counts as the next binade: one ulp from the largest float.
     const auto finite = [&](float value) {
         return is_finite(value) ? flushed(value) : std::copysign(0x1p128, double(value));
@@ -121,6 +123,12 @@ Difference largest_difference(std::span<const Outputs> a, std::span<const Output
     std::sort(all.rbegin(), all.rend());
     const auto [ulp, input] = all[outside];
     return {ulp, input, text_of(a[input]) + " and" + text_of(b[input])};
+}
+
+std::size_t count_beyond(std::span<const Outputs> a, std::span<const Outputs> b, double bound) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) count += difference(a[i], b[i]) > bound ? 1 : 0;
+    return count;
 }
 
 }  // namespace tessera::shading

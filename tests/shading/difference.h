@@ -24,11 +24,13 @@ struct Difference {
 };
 
 // Of two results: in ulp of the largest component of the vector where they are farthest apart; infinite where
-// only one is a number, or where bits differ that must not. Numbers below 2^-126 count as 0: a device may
-// flush them.
+// only one is a number, or where bits differ that must not. Numbers below 2^-112 count as 0: a device may
+// flush them, or smaller ones that they are calculated from.
 double difference(const Outputs& a, const Outputs& b);
 
 // The largest difference of all results, ignoring the `outside` worst.
 Difference largest_difference(std::span<const Outputs> a, std::span<const Outputs> b, std::size_t outside);
+
+std::size_t count_beyond(std::span<const Outputs> a, std::span<const Outputs> b, double bound);
 
 }  // namespace tessera::shading
