@@ -192,7 +192,7 @@ inline float covered_area(IN(Case) c, float cosine, float width) {
     const float footprint = triangle_footprint(c.context.scene, c.instance, c.triangle, cosine, width);
     const float first = vector_length(c.instance.linear * (c.triangle.q - c.triangle.p));
     const float second = vector_length(c.instance.linear * (c.triangle.r - c.triangle.p));
-    return 1e-18f + first * second * cosine + (footprint > 0.0f ? width * width / footprint : 0.0f);
+    return 1e-16f + first * second * cosine + (footprint > 0.0f ? width * width / footprint : 0.0f);
 }
 inline Surface with_scattering(IN(Case) c) {
     Surface surface = c.surface;

@@ -151,7 +151,8 @@ void compare(std::uint32_t list, InputSet set, Side& one, Side& other) {
     for (std::size_t i = 0; i < functions.size(); ++i) {
         const SharedFunction& function = functions[i];
         const double bound = set == InputSet::Ordinary ? function.ordinary : function.edges;
-        const Difference found = largest_difference(a[i], b[i], function.decides ? Count / 200 : 0);
+        const std::size_t outside = Count / (set == InputSet::Ordinary ? 200 : 50);
+        const Difference found = largest_difference(a[i], b[i], function.decides ? outside : 0);
         std::printf("%10.2f of %-6g %-9s %s\n", found.ulp, bound, name, function.call.c_str());
         EXPECT_LE(found.ulp, bound) << function.call << ", input " << found.input << " of " << name << ":"
                                     << found.values << "; " << count_beyond(a[i], b[i], bound) << " of "
