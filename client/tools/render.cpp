@@ -10,12 +10,14 @@
 #include "client/render.h"
 #include "client/tools/cluster_options.h"
 #include "client/tools/frame_names.h"
+#include "client/tools/host_info.h"
 #include "client/tools/interrupts.h"
 #include "client/tools/pictures.h"
 #include "client/tools/progress_line.h"
 #include "client/tools/render_options.h"
 #include "client/tools/render_report.h"
 #include "mediator/frame/resolve.h"
+#include "mediator/picture/exr_writer.h"
 
 namespace tessera::tools {
 
@@ -227,6 +229,7 @@ class Render {
         // A sequence keeps the exposure of its first frame.
         plan_.job.display_transform = used_transform(outputs, plan_.job, result_);
         const picture::CustomView* custom = plan_.custom_view ? &*plan_.custom_view : nullptr;
+        picture::set_exr_threads(plan_.embedded.threads > 0 ? plan_.embedded.threads : core_count());
         write_pictures(outputs, plan_.job, result_,
                        {std::filesystem::path(plan_.view.scene).filename().string(), camera_.name, hash},
                        plan_.statistics, custom);

@@ -5,6 +5,7 @@
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 
 #include <exception>
 
@@ -58,6 +59,10 @@ void write_exr(const std::string& path, std::uint32_t width, std::uint32_t heigh
             throw Error(ErrorCode::Io, "cannot write '" + path + "': " + error.what());
         }
     });
+}
+
+void set_exr_threads(std::uint32_t count) {
+    Imf::setGlobalThreadCount(static_cast<int>(count));
 }
 
 }  // namespace tessera::picture

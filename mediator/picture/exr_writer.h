@@ -23,4 +23,7 @@ struct Layer {
 void write_exr(const std::string& path, std::uint32_t width, std::uint32_t height, const Rect& window,
                const std::vector<Layer>& layers, const std::map<std::string, std::string>& attributes);
 
+// How many threads of this process compress EXR files; 0, as at the start: the calling one.
+void set_exr_threads(std::uint32_t count);
+
 }  // namespace tessera::picture

@@ -105,6 +105,15 @@ TEST_F(PictureTest, DamagedExrIsAnErrorAndNeverACrash) {
     EXPECT_THROW(read_exr(file("missing.exr")), Error);
 }
 
+TEST_F(PictureTest, AnExrIsTheSameFileWithAnyNumberOfThreads) {
+    const std::vector<Layer> layers{{"", {"R", "G", "B"}, noise(70, 99, 1)}};
+    write_exr(file("a.exr"), 70, 99, {0, 0, 70, 99}, layers, {});
+    set_exr_threads(4);
+    write_exr(file("b.exr"), 70, 99, {0, 0, 70, 99}, layers, {});
+    set_exr_threads(0);
+    EXPECT_EQ(bytes_of(file("a.exr")), bytes_of(file("b.exr")));
+}
+
 // OpenEXR reads as much as the type takes, and then other attributes than the header has.
 TEST_F(PictureTest, ExrAttributesHaveTheSizeOfTheirType) {
     write_exr(file("a.exr"), 5, 3, {0, 0, 5, 3}, {{"", {"R", "G", "B"}, noise(5, 3, 1)}}, {});
