@@ -26,7 +26,7 @@ TESSERA_DEMO_SIZE=960x540 TESSERA_DEMO_SPP=64 quietly deploy/demo.sh
 cp out/demo.png "$out/demo.png"
 
 progress "pictures  product"
-quietly "$tessera" render tests/scenes/still.glb --env tests/scenes/env-studio.exr --size 960x540 --spp 128 \
+quietly "$tessera" render tests/scenes/still.glb --env tests/scenes/env-studio.exr --env-rotation 90 --size 960x540 --spp 128 \
     --denoise=nfor:blend=off --exposure -1.2 \
     -o "$out/product.png"
 
@@ -39,7 +39,7 @@ progress "pictures  renderers"
 for renderer in path whitted raster coverage; do
     backend=embree
     [ $renderer != raster ] || backend=vulkan
-    quietly "$tessera" render tests/scenes/still.glb --env tests/scenes/env-studio.exr --renderer $renderer --backend $backend \
+    quietly "$tessera" render tests/scenes/still.glb --env tests/scenes/env-studio.exr --env-rotation 90 --renderer $renderer --backend $backend \
         --size 320x240 --spp "$spp" -o "$out/renderer-$renderer.png"
 done
 
