@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Usage: deploy/bench.sh [--docs]
 #
-# Sets up, builds and runs the benchmarks one after the other (about 25 minutes on 2 cores) and writes them as one page,
+# Sets up, builds and runs the benchmarks one after the other (about 50 minutes on 2 cores) and writes them as one page,
 # out/bench/benchmarks.md. Each figure is next to the limit that bounds it. Run it on an otherwise idle machine.
 #   --docs  writes docs/benchmarks.md instead
 set -euo pipefail
