@@ -8,6 +8,7 @@
 #define FEATURES_sheen (shading::FeatureExtras | shading::FeatureSheen)
 #define FEATURES_anisotropy shading::FeatureExtras
 #define FEATURES_rough_glass shading::FeatureRoughGlass
+#define FEATURES_thin_glass shading::FeatureThinGlass
 #define FEATURES_film (shading::FeatureExtras | shading::FeatureIridescence)
 #define FEATURES_attenuation shading::FeatureMedia
 #define FEATURES_fog (shading::FeatureMedia | shading::FeatureIndexMatchedMedia | shading::FeatureScattering)

@@ -10,8 +10,8 @@ extern const Kernel RoomKernel, StillKernel, StudioKernel;
 
 // For the scenes of rare_feature_scenes.h, by name.
 namespace exact {
-extern const Kernel none, coat, sheen, anisotropy, rough_glass, film, attenuation, fog, motion, shader,
-    catcher, area_lights;
+extern const Kernel none, coat, sheen, anisotropy, rough_glass, thin_glass, film, attenuation, fog, motion,
+    shader, catcher, area_lights;
 }
 
 }  // namespace tessera::embree

@@ -85,9 +85,9 @@ void run(const char* name, const SceneAdapter& world, const view::View& view, co
     const std::uint32_t features = world.tables().scene.features;
     std::printf("%s\n", name);
     if (features != exact.features) {
-        std::printf("  has features %x, not %x: update its kernel in tests/bench/micro\n", features,
-                    exact.features);
-        return;
+        std::fprintf(stderr, "%s has features %x, not %x: update its kernel in tests/bench/micro\n", name,
+                     features, exact.features);
+        std::exit(EXIT_FAILURE);
     }
     measure(world, view, exact, arguments);
 }

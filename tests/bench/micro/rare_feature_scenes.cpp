@@ -124,7 +124,7 @@ const std::vector<RareFeatureScene>& rare_feature_scenes() {
                                                       {"sheen", add_sheen, &exact::sheen},
                                                       {"anisotropy", add_anisotropy, &exact::anisotropy},
                                                       {"rough_glass", add_rough_glass, &exact::rough_glass},
-                                                      {"thin_glass", add_thin_glass, &exact::none},
+                                                      {"thin_glass", add_thin_glass, &exact::thin_glass},
                                                       {"film", add_film, &exact::film},
                                                       {"attenuation", add_attenuation, &exact::attenuation},
                                                       {"fog", add_fog, &exact::fog},
