@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "mediator/shading/rays.h"
-#include "mediator/shading/sobol.h"
+#include "mediator/shading/sampler.h"
 
 namespace tessera::embree {
 

@@ -3,7 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include "mediator/shading/rays.h"
-#include "mediator/shading/sobol.h"
+#include "mediator/shading/sampler.h"
 
 // The rays of the shared transport (mediator/shading/transport.h).
 namespace tessera::embree {

@@ -4,7 +4,7 @@
 #include "mediator/shading/bvh_node.h"
 #include "mediator/shading/motion.h"
 #include "mediator/shading/rays.h"
-#include "mediator/shading/sobol.h"
+#include "mediator/shading/sampler.h"
 
 // Traversal of the two-level acceleration structure. Hits depend on the triangles only, not on the tree or
 // the order of traversal, except for rays within a triangle's plane.

@@ -3,7 +3,7 @@
 
 #include "mediator/shading/maths.h"
 #include "mediator/shading/records.h"
-#include "mediator/shading/sobol.h"
+#include "mediator/shading/sampler.h"
 
 // Chooses one emitter by descending the light tree, at each node with probabilities in proportion to the
 // importance of its children for a receiver (Conty Estevez and Kulla 2018). Every emitter has a probability

@@ -2,7 +2,7 @@
 #define TESSERA_MEDIATOR_SHADING_MATERIALS_H
 
 #include "mediator/shading/rays.h"
-#include "mediator/shading/sobol.h"
+#include "mediator/shading/sampler.h"
 #include "mediator/shading/textures.h"
 
 // Material properties at a point of an instance's triangle. `b`: barycentric weights of the second and
@@ -57,7 +57,7 @@ inline vec3 emission_at(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, u
     return material.emission * vec3(texel_of(scene, material.emission_texture, mesh, corners, b, 0.0f));
 }
 
-inline constexpr uint AlphaPair = 0u;  // of the sequence of one triangle
+inline constexpr uint AlphaSet = 0u;  // of the sequence of one triangle
 
 inline bool alpha_stops(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, uint instance, uint triangle,
                         vec2 b, IN(Sampler) numbers) {
@@ -65,7 +65,7 @@ inline bool alpha_stops(IN(Scene) scene, IN(Material) material, IN(Mesh) mesh, u
     if (material.alpha_mode == AlphaOpaque) return true;
     if (material.alpha_mode == AlphaMask) return alpha >= material.alpha_cutoff;
     const uint seed = hash_combine(hash_combine(numbers.seed, instance), triangle);
-    return sample_pair(Sampler(numbers.index, seed), AlphaPair).x < alpha;
+    return sample_pair(Sampler(numbers.index, seed), AlphaSet).x < alpha;
 }
 
 // Whether a surface with alpha, or an unlit one, stops a ray. Mask: by the cutoff. Blend: by a random number of its own for each

@@ -52,10 +52,10 @@ WITH_CONTEXT inline EquiangularSample sample_equiangular(IN(Context) context, IN
     equiangular.is_active = true;
     equiangular.span =
         Span(traversal.segment_start, ray.direction, greater_of(end - traversal.segment_distance, 0.0f));
-    equiangular.chosen =
-        choose_emitter(context.scene, receiver_along(equiangular.span), pair_at(other_path, PairLightChoice));
+    equiangular.chosen = choose_emitter(context.scene, receiver_along(equiangular.span),
+                                        first_pair(set_at(other_path, LightSet)));
     const SpanView span_view = seen_from(context.scene, equiangular.span, equiangular.chosen.index);
-    equiangular.distance = equiangular_distance(span_view, pair_at(other_path, PairBsdfDirection).x);
+    equiangular.distance = equiangular_distance(span_view, first_pair(set_at(other_path, ScatterSet)).x);
     equiangular.pdf = equiangular_pdf(span_view, equiangular.distance);
     equiangular.is_equiangular = equiangular.pdf > 0.0f;
     return equiangular;
@@ -69,10 +69,10 @@ WITH_CONTEXT inline PathSegment traverse_segment(IN(Context) context, IN(Path) p
     if ((context.scene.features & FeatureMedia) == 0u || path.containing_media.x == NoInstance)
         return empty_segment();
     const float size = vector_length(ray.direction);
-    const uint pair = segment_pair(path.vertex, traversal.segment_index);
+    const uint set = segment_set(path.vertex, traversal.segment_index);
     vec2 u = vec2(0.0f);
-    if (kind != SegmentTransmits) u = sample_pair(path.numbers, pair);
-    const float place = unit_float(hash_combine(path.numbers.seed, pair ^ path.numbers.index));
+    if (kind != SegmentTransmits) u = sample_pair(path.numbers, set);
+    const float place = unit_float(hash_combine(path.numbers.seed, set ^ path.numbers.index));
     SegmentQuery query = segment_query(kind, path.throughput, u, place);
     query.equiangular_distance = equiangular_at;
     return segment_through(context.scene, path.containing_media, traversal.segment_start,

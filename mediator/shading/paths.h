@@ -5,7 +5,7 @@
 #include "mediator/shading/maths.h"
 #include "mediator/shading/path_sample.h"
 #include "mediator/shading/ray_cones.h"
-#include "mediator/shading/sobol.h"
+#include "mediator/shading/sampler.h"
 
 // The state of a path.
 SHADING_BEGIN
@@ -83,29 +83,36 @@ inline Sampler shadow_ray_numbers(IN(Path) path) {
                    hash_combine(path.numbers.seed, AlphaSequences + 2u * path.vertex + 1u));
 }
 
-// Pairs of random numbers: the first is the camera's, then each vertex has its own.
-inline constexpr uint CameraPair = 0u;
-inline constexpr uint LensPair = 0xffffffffu;  // beyond all vertices
-inline constexpr uint PairBsdfDirection = 0u, PairLobeAndRoulette = 1u, PairLightChoice = 2u,
-                      PairLightPoint = 3u, PairsPerVertex = 4u;
-inline constexpr uint TimePair = 0xfffffffeu;  // likewise
+// Sets of random numbers (sampler.h). The camera's: place in the pixel, and the point on the light that the path's
+// first rough vertex samples, since penumbrae in a pixel depend on these four together. Then each vertex has two:
+// direction, lobe and roulette; choice of a light and point on it.
+inline constexpr uint CameraSet = 0u, ScatterSet = 1u, LightSet = 2u, SetsPerVertex = 2u;
+inline constexpr uint LensSet = 0xffffffffu;  // place in the aperture, and time; beyond all vertices
 // Offset of the vertex index for scattering points in a medium on a branch of perfect speculars
 // (specular_branches.h): a disjoint range of RNG dimensions.
 inline constexpr uint MediumVertex = 0x10000000u;
 
-// RNG pair of a segment after a vertex; `number`: index of the segment.
-inline uint segment_pair(uint vertex, uint number) {
+// Set of a segment after a vertex; `number`: index of the segment.
+inline uint segment_set(uint vertex, uint number) {
     return 0x80000000u + (vertex * 64u + (number & 63u)) % 0x7ffffff0u;
 }
 
 // Time of a sample, 0 to 1 over the shutter; 0 if nothing moves.
 inline float sample_time(FeatureBits features, IN(View) view, uint x, uint y, uint64_t index) {
     if ((features & (FeatureMotion | FeatureCameraMotion)) == 0u) return 0.0f;
-    return sample_pair(make_sampler(x, y, view.seed, index), TimePair).x;
+    return second_pair(sample_set(make_sampler(x, y, view.seed, index), LensSet)).x;
 }
 
-inline vec2 pair_at(IN(Path) path, uint pair) {
-    return sample_pair(path.numbers, 1u + path.vertex * PairsPerVertex + pair);
+inline SampleSet set_at(IN(Path) path, uint set) {
+    return sample_set(path.numbers, path.vertex * SetsPerVertex + set);
+}
+
+// The numbers for the choice of a light, and for a point on it.
+inline vec4 light_numbers(IN(Path) path) {
+    const SampleSet light = set_at(path, LightSet);
+    if (path.vertex == path.walls + path.speculars)
+        return vec4(first_pair(light), second_pair(sample_set(path.numbers, CameraSet)));
+    return vec4(first_pair(light), second_pair(light));
 }
 
 // BT.601, as the thesis' filter was tuned with (Lardinoije 2.2).

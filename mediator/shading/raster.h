@@ -13,7 +13,7 @@ SHADING_BEGIN
 // That offset: sample_pair of a pixel index outside of all pictures.
 inline constexpr uint RasterPixel = 0xffffffffu;
 inline vec2 raster_place(IN(View) view, uint64_t index) {
-    return sample_pair(make_sampler(RasterPixel, RasterPixel, view.seed, index), CameraPair);
+    return sample_pair(make_sampler(RasterPixel, RasterPixel, view.seed, index), CameraSet);
 }
 
 // Near plane. Depth is its ratio to the distance (reversed z), so a small value costs no precision; with

@@ -54,7 +54,7 @@ WITH_CONTEXT inline void show_background(IN(Context) context, INOUT(Path) path, 
 
 // The next ray of a camera ray that hit a catcher.
 inline Ray leave_catcher(INOUT(Path) path, IN(Surface) surface) {
-    const vec3 up = sample_cosine_hemisphere(pair_at(path, PairBsdfDirection));
+    const vec3 up = sample_cosine_hemisphere(first_pair(set_at(path, ScatterSet)));
     path.class_info.scatter_count += 1u;
     path.vertex += 1u;
     return leaving(surface, unit_vector(frame_around(surface.geometric_normal) * up));

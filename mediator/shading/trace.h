@@ -68,7 +68,7 @@ WITH_CONTEXT inline bool leave_vertex(IN(Context) context, INOUT(Path) path, INO
     vec3 direction = vec3(0.0f);
     if (lobe.kind == LobeRough) {
         const vec3 wo = to_local(surface, -ray.direction);
-        add_lights(context, path, surface, wo, equiangular, connection);
+        add_lights(context, path, surface, wo, equiangular, lobe.roulette, connection);
         if (equiangular.is_equiangular) return true;
         if (!scatter(context.scene.energy, context.view, path, surface, wo, lobe, direction)) return false;
     } else {
@@ -275,8 +275,8 @@ WITH_CONTEXT inline Path trace_from(IN(Context) context, IN(Path) start, IN(Ray)
 WITH_CONTEXT inline Path trace_sample(IN(Context) context, uint x, uint y, uint64_t index) {
     const Path path = start_path(make_sampler(x, y, context.view.seed, index));
     const vec2 lens =
-        (context.view.camera & CameraLens) != 0u ? sample_pair(path.numbers, LensPair) : vec2(0.5f);
-    const vec2 u = sample_pair(path.numbers, CameraPair);
+        (context.view.camera & CameraLens) != 0u ? sample_pair(path.numbers, LensSet) : vec2(0.5f);
+    const vec2 u = sample_pair(path.numbers, CameraSet);
     const bool moves = (context.scene.features & FeatureCameraMotion) != 0u;
     const Ray ray = moves ? moving_camera_ray(context.view, context.time, x, y, u, lens)
                           : camera_ray(context.view, x, y, u, lens);

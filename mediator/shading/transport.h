@@ -60,6 +60,7 @@ inline constexpr uint LobeNone = 0u, LobeRough = 1u, LobeReflection = 2u, LobeRe
 // A lobe group, and the remaining random numbers of this vertex, in [0, 1).
 struct Lobe {
     uint kind;
+    vec2 direction;
     float choice;
     float roulette;
 };
@@ -173,12 +174,13 @@ WITH_CONTEXT inline void receive_light(IN(Context) context, INOUT(PathSample) fo
 inline constexpr float MinConnectionWeight = 0.125f;
 
 // Next event estimation. `connection` is opened if the shadow ray may cross medium boundaries. `equiangular`:
-// of a point in a medium.
+// of a point in a medium. `roulette`: a uniform number.
 WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Surface) surface, vec3 wo,
-                                    IN(EquiangularSample) equiangular, INOUT(Connection) connection) {
+                                    IN(EquiangularSample) equiangular, float roulette,
+                                    INOUT(Connection) connection) {
     if (context.scene.light_count == 0u) return;
-    const vec2 choice = pair_at(path, PairLightChoice);
-    const vec2 u = pair_at(path, PairLightPoint);
+    const vec4 numbers = light_numbers(path);
+    const vec2 choice = vec2(numbers), u = vec2(numbers.z, numbers.w);
     ChosenEmitter given = no_emitter();
     if (equiangular.is_equiangular) given = equiangular.chosen;
     const LightSample light = sample_light(context.scene, context.view.layers, surface, given, choice, u);
@@ -200,7 +202,7 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
             density *= weights.other_probability / light.chance;
             const float survival = weight / MinConnectionWeight;
             if (survival < 1.0f) {
-                if (!(pair_at(path, PairLobeAndRoulette).y < survival)) return;
+                if (!(roulette < survival)) return;
                 weight = MinConnectionWeight;
             }
         }
@@ -209,14 +211,14 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
     if (!alone) weight *= power_heuristic(density, bsdf.pdf);
     const vec3 origin = leaving(surface, light.direction).origin;
     bool is_open = (context.scene.features & FeatureIndexMatchedMedia) != 0u;
-    const Sampler numbers = shadow_ray_numbers(path);
+    const Sampler shadow_numbers = shadow_ray_numbers(path);
     // Shadow rays have directions of any length.
     const vec3 segment = light.distant ? light.direction : light.target - origin;
     if (!is_open) {
         const float far = light.distant ? infinity() : 1.0f;
         path.rays += 1u;
         bool meets_walls = false;
-        if (trace_occluded(context, origin, segment, far, numbers, meets_walls)) return;
+        if (trace_occluded(context, origin, segment, far, shadow_numbers, meets_walls)) return;
         is_open = (context.scene.features & FeatureThinGlass) != 0u && meets_walls;
     }
     vec3 arriving = path.throughput * bsdf.value * light.radiance * (weight / light.pdf);
@@ -230,8 +232,8 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
         media_after(context.scene, path.containing_media, surface, light.direction);
     if (is_open) {
         // Holds the shadow ray until the path's next ray is known (start_connection).
-        connection = Connection(true, arriving, intensity, light.distant, light.target, class_info, numbers,
-                                Ray(origin, segment), false, containing_media);
+        connection = Connection(true, arriving, intensity, light.distant, light.target, class_info,
+                                shadow_numbers, Ray(origin, segment), false, containing_media);
         return;
     }
     if ((context.scene.features & FeatureMedia) != 0u && !light.distant) {
@@ -244,8 +246,9 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
 
 // The rough lobes with probability 1: there are no others, or they are followed as separate branches.
 inline Lobe rough_lobe(IN(Path) path) {
-    const vec2 u = pair_at(path, PairLobeAndRoulette);
-    return Lobe(LobeRough, u.x, u.y);
+    const SampleSet numbers = set_at(path, ScatterSet);
+    const vec2 u = second_pair(numbers);
+    return Lobe(LobeRough, first_pair(numbers), u.x, u.y);
 }
 
 // Chooses and divides the throughput by the probability; LobeNone ends the path.
@@ -265,7 +268,7 @@ inline Lobe choose_lobe(INOUT(Path) path, IN(Surface) surface, IN(Lobe) rough) {
         first = chances.reflection;
         width = chances.refraction;
     }
-    if (!(width > 0.0f)) return Lobe(LobeNone, 0.0f, 0.0f);
+    if (!(width > 0.0f)) return Lobe(LobeNone, vec2(0.0f), 0.0f, 0.0f);
     lobe.choice = clamp((lobe.choice - first) / width, 0.0f, 0.99999994f);
     path.throughput /= width;
     return lobe;
@@ -274,8 +277,7 @@ inline Lobe choose_lobe(INOUT(Path) path, IN(Surface) surface, IN(Lobe) rough) {
 // Sets `direction` to the sampled direction; false: the path ends. The caller counts the vertex.
 inline bool scatter(FloatArray energy, IN(View) view, INOUT(Path) path, IN(Surface) surface, vec3 wo,
                     IN(Lobe) lobe, INOUT(vec3) direction) {
-    const vec2 u = pair_at(path, PairBsdfDirection);
-    const vec3 wi = sample_bsdf(surface.bsdf, wo, lobe.choice, u);
+    const vec3 wi = sample_bsdf(surface.bsdf, wo, lobe.choice, lobe.direction);
     const BsdfValue bsdf = evaluate_bsdf(energy, surface.bsdf, wo, wi);
     if (!(bsdf.pdf > 0.0f)) return false;
     direction = unit_vector(to_world(surface, wi));

@@ -123,8 +123,8 @@ Counts brute_force(const view::View& view, const std::vector<Square>& squares) {
         for (std::uint32_t x = 0; x < view.width; ++x) {
             const shading::Sampler numbers = shading::make_sampler(x, y, view.seed, 0);
             const shading::Ray ray =
-                shading::camera_ray(record, x, y, shading::sample_pair(numbers, shading::CameraPair),
-                                    shading::sample_pair(numbers, shading::LensPair));
+                shading::camera_ray(record, x, y, shading::sample_pair(numbers, shading::CameraSet),
+                                    shading::sample_pair(numbers, shading::LensSet));
             const glm::dvec3 origin(ray.origin), direction(ray.direction);
             double nearest = 1e30;
             std::uint32_t object = 0;

@@ -10,7 +10,7 @@
 #include "mediator/backend/tables/view_record.h"
 #include "mediator/base/random.h"
 #include "mediator/shading/camera.h"
-#include "mediator/shading/sobol.h"
+#include "mediator/shading/sampler.h"
 
 namespace tessera::shading {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "mediator/shading/maths.h"
 #include "mediator/shading/perfect_specular.h"
+#include "mediator/shading/sampler.h"
 #include "mediator/shading/sampling.h"
-#include "mediator/shading/sobol.h"
 #include "tests/shading/outputs.h"
 
 // Arguments for the functions of functions/*.inc, in C++ and in shaders. Those that need a scene:

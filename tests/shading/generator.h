@@ -4,7 +4,7 @@
 #include <initializer_list>
 
 #include "mediator/shading/maths.h"
-#include "mediator/shading/sobol.h"
+#include "mediator/shading/sampler.h"
 
 namespace tessera::shading {
 

@@ -79,6 +79,10 @@ inline void put(INOUT(Outputs) y, IN(Sampler) value) {
     put(y, value.index);
     put(y, value.seed);
 }
+inline void put(INOUT(Outputs) y, IN(SampleSet) value) {
+    put(y, value.index);
+    put(y, value.seed);
+}
 inline void put(INOUT(Outputs) y, IN(Mixture) value) {
     put(y, value.metal);
     put(y, value.dielectric);

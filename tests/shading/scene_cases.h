@@ -294,7 +294,7 @@ inline Path with_sun_disks(IN(Case) c) {
 inline Path with_lights(IN(Case) c) {
     Path path = c.path;
     Connection connection = no_connection();
-    add_lights(c.context, path, c.surface, c.wo, no_equiangular_sample(), connection);
+    add_lights(c.context, path, c.surface, c.wo, no_equiangular_sample(), 0.5f, connection);
     return path;
 }
 

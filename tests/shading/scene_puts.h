@@ -181,6 +181,7 @@ inline void put(INOUT(Outputs) y, IN(LobeChances) chances) {
 }
 inline void put(INOUT(Outputs) y, IN(Lobe) lobe) {
     put(y, lobe.kind);
+    put(y, lobe.direction);
     put(y, vec3(1.0f, lobe.choice, lobe.roulette));  // numbers of [0, 1), so their ulp is that of 1
 }
 inline void put(INOUT(Outputs) y, IN(Step) step) {

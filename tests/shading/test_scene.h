@@ -27,7 +27,7 @@ struct Context {
 SHADING_END
 
 #include "mediator/shading/rays.h"
-#include "mediator/shading/sobol.h"
+#include "mediator/shading/sampler.h"
 
 SHADING_BEGIN
 

@@ -1,7 +1,6 @@
 // Every sampling routine draws what its density says (chi-squared), and the surface model keeps its promises.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -11,7 +10,6 @@
 #include "mediator/base/random.h"
 #include "mediator/shading/bsdf.h"
 #include "mediator/shading/environment.h"
-#include "mediator/shading/sobol.h"
 #include "tests/statistics/chi_squared.h"
 #include "tests/statistics/lobes.h"
 
@@ -184,24 +182,6 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, SurfaceModel,
 INSTANTIATE_TEST_SUITE_P(Surfaces, WideSurfaceModel,
                          testing::Combine(testing::Values(0.35f, 0.6f, 1.0f), testing::Values(0.0f, 1.0f),
                                           testing::Values(1.0f, 0.5f, 0.1f)));
-
-// Any aligned power-of-two block of a pair's points has one point in each elementary interval of its size.
-TEST(Sobol, EveryAlignedBlockIsStratified) {
-    const auto at = [](std::uint64_t index) { return sample_pair(make_sampler(17, 4, 99, index), 5); };
-    constexpr std::uint32_t Level = 6;
-    for (const std::uint64_t first : {0u, 64u, 1024u, 4096u + 64u}) {
-        for (std::uint32_t split = 0; split <= Level; ++split) {
-            std::array<int, 64> hits{};
-            const auto wide = static_cast<float>(1u << split), high = static_cast<float>(64u >> split);
-            for (std::uint64_t i = first; i < first + 64; ++i) {
-                const glm::vec2 u = at(i);
-                ++hits[static_cast<std::size_t>(u.x * wide) * static_cast<std::size_t>(high) +
-                       static_cast<std::size_t>(u.y * high)];
-            }
-            for (const int count : hits) EXPECT_EQ(count, 1);
-        }
-    }
-}
 
 }  // namespace
 }  // namespace tessera::shading
