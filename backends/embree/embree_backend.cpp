@@ -88,8 +88,7 @@ class EmbreeBackend final : public Backend {
             for (std::int32_t x = tile.rect.x; x < tile.rect.right(); ++x, ++pixel) {
                 const PathSample sample = tracer.trace(static_cast<std::uint32_t>(x),
                                                        static_cast<std::uint32_t>(y), tile.block.first, rays);
-                const shading::SampleValues values = shading::sample_values(
-                    tracer.view(), sample, static_cast<std::uint32_t>(tile.block.first));
+                const shading::SampleValues values = shading::sample_values(tracer.view(), sample);
                 frame::put_sample(tile, pixel, {values.items, values.count});
             }
         }

@@ -66,8 +66,7 @@ Gradient gradient(const view::View& view, const backend::FlatScene& flat_scene, 
             .object = hit ? instances[cell].geometry : ObjectId{}};
 }
 
-void append_values(const Gradient& sample, std::uint64_t index, frame::ChannelSet channels,
-                   std::vector<float>& values) {
+void append_values(const Gradient& sample, frame::ChannelSet channels, std::vector<float>& values) {
     const auto add = [&](Channel channel, const std::array<float, 3>& rgb) {
         if (channels.contains(channel)) values.insert(values.end(), rgb.begin(), rgb.end());
     };
@@ -88,11 +87,6 @@ void append_values(const Gradient& sample, std::uint64_t index, frame::ChannelSe
     add(Channel::Headlight, albedo);
     if (channels.contains(Channel::ShadingFeature)) values.push_back(direct[1] + indirect[1]);
     add(Channel::Irradiance, direct);
-    if (channels.contains(Channel::HalfBufferA)) {
-        const bool even = index % 2 == 0;
-        for (const float value : radiance) values.push_back(even ? value : 0.0f);
-        values.push_back(even ? 1.0f : 0.0f);
-    }
     add(Channel::Color, radiance);
 }
 

@@ -43,8 +43,7 @@ inline Colors colors(const view::View& view, std::uint64_t key, std::int32_t x, 
 Gradient gradient(const view::View& view, const backend::FlatScene& flat_scene, std::uint64_t key,
                   std::int32_t x, std::int32_t y, std::uint64_t sample);
 
-// In the order of frame::put_sample; `index` is the sample index.
-void append_values(const Gradient& sample, std::uint64_t index, frame::ChannelSet channels,
-                   std::vector<float>& values);
+// In the order of frame::put_sample.
+void append_values(const Gradient& sample, frame::ChannelSet channels, std::vector<float>& values);
 
 }  // namespace tessera::null_backend

@@ -108,7 +108,7 @@ class NullBackend final : public Backend {
             if (stop.stop_requested()) return false;
             for (std::int32_t x = tile.rect.x; x < tile.rect.right(); ++x, ++pixel) {
                 const Gradient sample = gradient(view, shadow_.flat_scene(), key, x, y, tile.block.first);
-                append_values(sample, tile.block.first, tile.channels, values);
+                append_values(sample, tile.channels, values);
                 frame::put_sample(tile, pixel, values);
                 values.clear();
             }

@@ -12,7 +12,7 @@ namespace tessera::vulkan {
 std::uint32_t value_count(frame::ChannelSet channels) {
     std::uint32_t count = 0;
     for (const frame::ChannelInfo& info : frame::channel_table()) {
-        if (channels.contains(info.channel)) count += info.components;
+        if (channels.contains(info.channel)) count += info.value_count();
     }
     return count;
 }

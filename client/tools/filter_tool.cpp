@@ -105,9 +105,13 @@ Expected<void> check(const filter::Choice& choice, const picture::FilmFile& file
     const filter::Description& filter = choice.entry->description;
     const auto missing = filter::missing_channels(choice, file.film.channels);
     if (!missing.empty()) {
+        using enum frame::Channel;
+        const bool is_old = missing.contains(FirstHalf) && file.film.channels.contains(HalfBufferA);
         return failure(ErrorCode::InvalidInput,
                        "filter '" + std::string(filter.name) + "' needs " + channels_text(missing) +
-                           ", which the film does not contain: render it with --save-statistics");
+                           ", which the film does not contain" +
+                           (is_old ? " (its half_buffer_a has halves that depend on each other)" : "") +
+                           ": render it with --save-statistics");
     }
     if (filter.path_class != view::PathClass::Indirect && filter.path_class != view.path_class) {
         return failure(ErrorCode::InvalidInput,

@@ -121,7 +121,7 @@ frame::ChannelSet channels_for(const RenderOptions& options) {
         return all;
     }
     if (any_exr(options.outputs))
-        return {Radiance, LowVariance, HighVariance, Albedo, Normal, Depth, ObjectIndex};
+        return {Radiance, LowVariance, HighVariance, Albedo, Normal, Depth, ObjectIndex, BlockVariance};
     return {Radiance};
 }
 

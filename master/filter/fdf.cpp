@@ -214,7 +214,8 @@ FilterEntry fdf_entry() {
                  return frame::ChannelSet{Channel::Radiance, Channel::Albedo, Channel::Normal,
                                           Channel::ShadingFeature, Channel::Depth};
              },
-         .consistent = true},
+         .consistent = true,
+         .reads_variances = true},
         [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> { return std::make_unique<Fdf>(); }};
 }
 

@@ -189,9 +189,10 @@ FilterEntry nfor_entry() {
          .channels =
              [](const Values&) {
                  return frame::ChannelSet{Channel::Radiance, Channel::Albedo, Channel::Normal, Channel::Depth,
-                                          Channel::HalfBufferA};
+                                          Channel::FirstHalf};
              },
-         .consistent = true},
+         .consistent = true,
+         .reads_variances = true},
         [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> { return std::make_unique<Nfor>(); }};
 }
 

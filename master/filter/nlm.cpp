@@ -197,7 +197,8 @@ FilterEntry nlm_entry() {
                      frame::ChannelSet channels{Channel::Radiance};
                      if (values[Demodulate] == 1.0) channels.insert(Channel::Albedo);
                      return channels;
-                 }},
+                 },
+             .reads_variances = true},
             [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> { return std::make_unique<Nlm>(); }};
 }
 

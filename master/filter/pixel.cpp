@@ -320,7 +320,8 @@ FilterEntry pixel_entry() {
                      if (is_on(values, Normals)) channels.insert(Channel::Normal);
                      return channels;
                  },
-             .consistent = true},
+             .consistent = true,
+             .reads_variances = true},
             [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> {
                 return std::make_unique<PixelFilter>();
             }};

@@ -298,6 +298,7 @@ FilterEntry psvgf_entry() {
          .parameters = psvgf_parameters(),
          .channels = [](const Values&) { return Needed; },
          .consistent = true,
+         .reads_variances = true,
          .temporal = true,
          .path_class = view::PathClass::Diffuse},
         [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> { return std::make_unique<Psvgf>(); }};

@@ -288,7 +288,8 @@ FilterEntry statmc_entry() {
                  return frame::ChannelSet{Channel::Radiance, Channel::Albedo, Channel::Normal,
                                           Channel::Depth};
              },
-         .consistent = true},
+         .consistent = true,
+         .reads_variances = true},
         [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> { return std::make_unique<StatMc>(); }};
 }
 

@@ -97,7 +97,7 @@ std::string problem_of(const session::ViewRequest& request) {
 
 void complete(view::View& view) {
     const auto filter = filter::parse_choice(view.filter, filter::catalog());
-    view.channels = view.channels | filter::missing_channels(*filter, view.channels);
+    view.channels = view.channels | filter::wanted_channels(*filter, view.channels);
     if (view.transparent_background) view.channels.insert(frame::Channel::Alpha);
     const view::PathClass wanted = filter->entry->description.path_class;
     if (wanted != view::PathClass::Indirect) view.path_class = wanted;

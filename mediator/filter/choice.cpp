@@ -113,6 +113,13 @@ frame::ChannelSet missing_channels(const Choice& choice, frame::ChannelSet there
     return choice.channels() - there;
 }
 
+frame::ChannelSet wanted_channels(const Choice& choice, frame::ChannelSet there) {
+    frame::ChannelSet wanted = missing_channels(choice, there);
+    if (choice.entry->description.reads_variances)
+        wanted = wanted | (frame::ChannelSet{frame::Channel::BlockVariance} - there);
+    return wanted;
+}
+
 std::string to_text(const Choice& choice) {
     const Description& filter = choice.entry->description;
     std::string text;

@@ -24,6 +24,9 @@ Expected<Choice> parse_choice(std::string_view text, std::span<const FilterEntry
 // Channels that the filter reads and `there` does not contain. Without a filter, Color suffices instead of Radiance.
 frame::ChannelSet missing_channels(const Choice& choice, frame::ChannelSet there);
 
+// The same, and channels without which the filter overestimates errors.
+frame::ChannelSet wanted_channels(const Choice& choice, frame::ChannelSet there);
+
 // The shortest text that parses to the same: default values are left out.
 std::string to_text(const Choice& choice);
 

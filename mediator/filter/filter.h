@@ -32,6 +32,7 @@ struct Description {
     frame::ChannelSet (*channels)(const Values&);  // read by a run with these values
     // Its error goes to 0 with the number of samples. Otherwise it is biased.
     bool consistent = false;
+    bool reads_variances = false;
     // Keeps a history between runs: reset() drops it.
     bool temporal = false;
     // The paths for HighVariance, if it reads that channel.

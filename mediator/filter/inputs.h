@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mediator/filter/planes.h"
+#include "mediator/frame/design_effect.h"
 #include "mediator/frame/film_tile.h"
 #include "mediator/view/view.h"
 
@@ -25,14 +26,17 @@ struct Inputs {
     std::uint32_t width = 0, height = 0;
     Planes counts;                                      // 1 component: accepted samples n; 0 = hole
     std::array<Planes, frame::ChannelCount> means;      // n = 0: 0 (Depth +inf)
-    std::array<Planes, frame::ChannelCount> variances;  // of the mean, of Moments channels: M2 / (n (n - 1));
+    std::array<Planes, frame::ChannelCount> variances;  // of the mean, of Moments channels: M2 / (n (n - 1))
+                                                        // times design_effect (frame/design_effect.h);
                                                         // 0 where n < 2: unknown there, not small
-    std::array<Planes, 2> halves;           // radiance of even and of odd samples, with HalfBufferA
+    std::array<Planes, 2>
+        halves;  // radiance of the first half of the samples and of the others, with FirstHalf
     std::array<Planes, 2> half_counts;      // samples in each
     std::vector<std::uint32_t> object_ids;  // with ObjectIndex; 0 = miss
     view::CameraPose camera;                // of the whole picture
     view::PathClass path_class = view::PathClass::Indirect;
     Changes changes;
+    frame::DesignEffect design_effect;  // of the film
 
     bool has(frame::Channel channel) const { return !mean(channel).empty(); }
     const Planes& mean(frame::Channel channel) const { return means[static_cast<std::size_t>(channel)]; }

@@ -17,9 +17,22 @@ namespace tessera::frame {
 //   Minimum, Maximum  c planes; empty pixels hold +inf, -inf
 //   Nearest  c planes, the first is the key: the record with the smaller key stays, ties to the lower sample
 //   First    c planes: the record of the lowest sample index stays
-enum class MergeRule : std::uint8_t { Moments, Sum, Minimum, Maximum, Nearest, First };
+// Two rules follow from the means of radiance when blocks are merged; samples have no values for them (merge.h):
+//   BlockVariance  2 planes: squared half difference of the two halves of the block, and the mean of those of the halves
+//   FirstHalf      4 planes: mean of the first half of the block, and its number of samples
+enum class MergeRule : std::uint8_t {
+    Moments,
+    Sum,
+    Minimum,
+    Maximum,
+    Nearest,
+    First,
+    BlockVariance,
+    FirstHalf
+};
 constexpr auto enumerators(MergeRule) {
-    return std::to_array<std::string_view>({"moments", "sum", "minimum", "maximum", "nearest", "first"});
+    return std::to_array<std::string_view>(
+        {"moments", "sum", "minimum", "maximum", "nearest", "first", "block_variance", "first_half"});
 }
 
 // Values are on the wire: never renumber.
@@ -37,6 +50,8 @@ enum class Channel : std::uint8_t {
     Irradiance = 10,
     HalfBufferA = 11,
     Color = 12,
+    BlockVariance = 13,
+    FirstHalf = 14,
 };
 
 struct ChannelInfo {
@@ -48,6 +63,11 @@ struct ChannelInfo {
     constexpr std::uint32_t plane_count() const {
         return rule == MergeRule::Moments ? 2 * components : components;
     }
+    constexpr bool is_derived() const {
+        return rule == MergeRule::BlockVariance || rule == MergeRule::FirstHalf;
+    }
+    // Values of one sample.
+    constexpr std::uint32_t value_count() const { return is_derived() ? 0 : components; }
 };
 
 // One row per channel, in the order of their numbers, without gaps.
@@ -74,10 +94,14 @@ inline constexpr auto ChannelTable = std::to_array<ChannelInfo>({
     {Channel::Irradiance, "irradiance", MergeRule::Moments, 3,
      "irradiance of the diffuse lobe at the first non-delta hit: times albedo = its radiance"},
     {Channel::HalfBufferA, "half_buffer_a", MergeRule::Sum, 4,
-     "sum of r, g, b of the samples of even index, and their count"},
+     "sum of r, g, b of the samples of even index, and their count; in old films only"},
     {Channel::Color, "color", MergeRule::Sum, 3,
      "radiance of the pixel without second moments, for pictures without statistics: half of radiance's "
      "planes"},
+    {Channel::BlockVariance, "block_variance", MergeRule::BlockVariance, 2,
+     "error of the mean by the halves of blocks of samples: of the luminance, and of the halves themselves"},
+    {Channel::FirstHalf, "first_half", MergeRule::FirstHalf, 4,
+     "mean radiance of the first half of the samples, and their count"},
 });
 inline constexpr std::size_t ChannelCount = ChannelTable.size();
 
@@ -106,9 +130,11 @@ class ChannelSet {
     constexpr ChannelSet(std::initializer_list<Channel> channels) {
         for (const Channel channel : channels) insert(channel);
     }
+    // All that can be rendered.
     static constexpr ChannelSet all() {
         ChannelSet set;
         for (const ChannelInfo& entry : ChannelTable) set.insert(entry.channel);
+        set.erase(Channel::HalfBufferA);
         return set;
     }
     // As received: may have bits of unknown channels.
@@ -119,7 +145,19 @@ class ChannelSet {
     }
     constexpr const Words& words() const { return words_; }
     constexpr Words& words() { return words_; }
-    constexpr bool is_known() const { return (*this - all()).empty(); }
+    constexpr bool is_known() const { return (*this - all() - ChannelSet{Channel::HalfBufferA}).empty(); }
+    // Why no film can have these channels, or nullptr.
+    constexpr const char* malformed() const {
+        if (!is_known()) return "a channel is unknown";
+        const bool is_derived = contains(Channel::BlockVariance) || contains(Channel::FirstHalf);
+        if (is_derived && !contains(Channel::Radiance)) return "block_variance and first_half need radiance";
+        return nullptr;
+    }
+    // Why they cannot be rendered, or nullptr.
+    constexpr const char* not_renderable() const {
+        if (contains(Channel::HalfBufferA)) return "half_buffer_a is no longer rendered: request first_half";
+        return malformed();
+    }
     // For the shading code, whose channels are all below 32.
     constexpr std::uint32_t kernel_bits() const { return static_cast<std::uint32_t>(words_[0]); }
 

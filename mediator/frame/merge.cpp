@@ -1,6 +1,7 @@
 #include "mediator/frame/merge.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -83,7 +84,91 @@ void merge_values(FilmTile& into, const FilmTile& later, std::uint32_t first, st
     }
 }
 
-void merge_channel(FilmTile& into, const FilmTile& later, const ChannelInfo& info, const Counts& counts) {
+// Means of radiance of one pixel.
+struct Radiances {
+    std::array<std::span<const float>, 3> planes;
+    explicit Radiances(const FilmTile& film) {
+        const std::uint32_t first = film.channels.first_plane(Channel::Radiance);
+        for (std::uint32_t c = 0; c < 3; ++c) planes[c] = film.plane(first + c);
+    }
+};
+
+// As in shaders/merge.comp.
+float squared_difference(const Radiances& a, const Radiances& b, std::size_t pixel) {
+    constexpr std::array Weights{0.2126f, 0.7152f, 0.0722f};
+    float sum = 0.0f;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const float difference = a.planes[c][pixel] - b.planes[c][pixel];
+        sum += Weights[c] * (difference * difference);
+    }
+    return sum;
+}
+
+// Errors of the means of two blocks that are merged, and of the halves of those blocks.
+struct BlockErrors {
+    float top, below;
+};
+
+BlockErrors merged_siblings(BlockErrors a, float na, BlockErrors b, float nb, float square) {
+    if (na == nb) return {0.25f * square, 0.5f * (a.top + b.top)};
+    const float wa = na / (na + nb), wb = nb / (na + nb);
+    return {wa * wb * square, wa * a.top + wb * b.top};
+}
+
+BlockErrors merged_roots(BlockErrors a, float na, BlockErrors b, float nb, float square) {
+    if (na == 1.0f && nb == 1.0f) return {0.25f * square, 0.0f};
+    if (na == 1.0f) a = {nb * b.top, nb * b.below};
+    if (nb == 1.0f) b = {na * a.top, na * a.below};
+    const float wa = na / (na + nb), wb = nb / (na + nb);
+    return {wa * wa * a.top + wb * wb * b.top, wa * wa * a.below + wb * wb * b.below};
+}
+
+void merge_block_variance(FilmTile& into, const FilmTile& later, std::uint32_t first, const Counts& counts,
+                          bool are_siblings) {
+    const std::span<float> top = into.plane(first), below = into.plane(first + 1);
+    const std::span<const float> later_top = later.plane(first), later_below = later.plane(first + 1);
+    const Radiances a(into), b(later);
+    if (are_siblings && counts.equal_everywhere) {
+        for (std::size_t i = 0; i < top.size(); ++i) {
+            below[i] = 0.5f * (top[i] + later_top[i]);
+            top[i] = 0.25f * squared_difference(a, b, i);
+        }
+        return;
+    }
+    for (std::size_t i = 0; i < top.size(); ++i) {
+        if (later.counts[i] == 0) continue;
+        BlockErrors both{later_top[i], later_below[i]};
+        if (into.counts[i] != 0) {
+            const auto merged = are_siblings ? merged_siblings : merged_roots;
+            both = merged({top[i], below[i]}, static_cast<float>(into.counts[i]), both,
+                          static_cast<float>(later.counts[i]), squared_difference(a, b, i));
+        }
+        top[i] = both.top;
+        below[i] = both.below;
+    }
+}
+
+void merge_first_half(FilmTile& into, const FilmTile& later, std::uint32_t first, bool are_siblings) {
+    const std::span<float> count = into.plane(first + 3);
+    const Radiances all(into);
+    for (std::size_t i = 0; i < count.size(); ++i) {
+        const float more = are_siblings ? 0.0f : later.plane(first + 3)[i];
+        if (are_siblings) {
+            count[i] = static_cast<float>(into.counts[i]);
+            for (std::uint32_t c = 0; c < 3; ++c) into.plane(first + c)[i] = all.planes[c][i];
+        } else if (more > 0.0f) {
+            const float share = more / (count[i] + more);
+            for (std::uint32_t c = 0; c < 3; ++c) {
+                float& mean = into.plane(first + c)[i];
+                mean -= (mean - later.plane(first + c)[i]) * share;
+            }
+            count[i] += more;
+        }
+    }
+}
+
+void merge_channel(FilmTile& into, const FilmTile& later, const ChannelInfo& info, const Counts& counts,
+                   bool are_siblings) {
     const std::uint32_t first = into.channels.first_plane(info.channel), components = info.components;
     switch (info.rule) {
         case MergeRule::Moments:
@@ -100,6 +185,10 @@ void merge_channel(FilmTile& into, const FilmTile& later, const ChannelInfo& inf
             return merge_nearest(into, later, first, components);
         case MergeRule::First:
             return merge_first(into, later, first, components);
+        case MergeRule::BlockVariance:
+            return merge_block_variance(into, later, first, counts, are_siblings);
+        case MergeRule::FirstHalf:
+            return merge_first_half(into, later, first, are_siblings);
     }
 }
 
@@ -112,7 +201,7 @@ float neutral(MergeRule rule, std::uint32_t component) {
 }
 
 bool has_value(const ChannelInfo& info, std::span<const float> values) {
-    for (std::uint32_t c = 0; c < info.components; ++c) {
+    for (std::uint32_t c = 0; c < info.value_count(); ++c) {
         const bool is_sum = info.rule == MergeRule::Moments || info.rule == MergeRule::Sum;
         if (is_sum && !std::isfinite(values[c])) return false;
         const bool is_payload = c > 0 || info.rule == MergeRule::First;
@@ -127,14 +216,14 @@ void put_sample(FilmTile& tile, std::size_t pixel, std::span<const float> values
     std::size_t next = 0;
     std::uint32_t plane = 0;
     const bool is_counted = tile.channels.for_each([&](const ChannelInfo& info) {
-        const bool is_valid = has_value(info, values.subspan(next, info.components));
+        const bool is_valid = has_value(info, values.subspan(next, info.value_count()));
         if (info.channel == Channel::Radiance && !is_valid) return false;
-        for (std::uint32_t c = 0; c < info.components; ++c, ++next) {
+        for (std::uint32_t c = 0; c < info.value_count(); ++c, ++next) {
             // As bits: ids may look like a NaN.
             const float other = neutral(info.rule, c);
             std::memcpy(&tile.plane(plane + c)[pixel], is_valid ? &values[next] : &other, sizeof(float));
         }
-        plane += info.plane_count();  // M2 of a single sample stays 0
+        plane += info.plane_count();  // M2 of a single sample stays 0, as do channels without values
         return true;
     });
     if (is_counted) {
@@ -148,12 +237,17 @@ void merge(FilmTile& into, const FilmTile& later) {
     assert(into.rect == later.rect && into.channels == later.channels &&
            into.block.end() <= later.block.first);
     const Counts counts(into, later);
-    for (const ChannelInfo& info : channel_table()) {
-        if (into.channels.contains(info.channel)) merge_channel(into, later, info, counts);
+    const bool are_siblings = into.block.sibling() == later.block;
+    // Derived channels need the means before they are merged.
+    for (const bool is_derived : {true, false}) {
+        into.channels.for_each([&](const ChannelInfo& info) {
+            if (info.is_derived() == is_derived) merge_channel(into, later, info, counts, are_siblings);
+            return true;
+        });
     }
     for (std::size_t i = 0; i < into.counts.size(); ++i) into.counts[i] += later.counts[i];
     into.nonfinite_samples += later.nonfinite_samples;
-    if (into.block.sibling() == later.block) {
+    if (are_siblings) {
         into.block = into.block.parent();
     } else {
         // Merged roots that are no siblings form no block; the end is kept so that the order of merges can be checked.

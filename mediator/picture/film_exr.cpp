@@ -15,6 +15,7 @@
 #include "mediator/base/description.h"
 #include "mediator/base/error.h"
 #include "mediator/base/old_names.h"
+#include "mediator/frame/design_effect.h"
 #include "mediator/frame/resolve.h"
 #include "mediator/picture/exr_header.h"
 
@@ -56,6 +57,23 @@ Layer statistics_layer(const frame::FilmTile& film, const frame::ChannelInfo& en
         }
     }
     return layer;
+}
+
+// Variance of the mean, of stratified samples, and of single samples.
+void add_variances(const frame::FilmTile& film, std::vector<Layer>& layers) {
+    const std::vector<std::string> rgb{"R", "G", "B"};
+    Layer mean{"variance", rgb, frame::resolve_variance_of_mean(film, frame::Channel::Radiance)};
+    Layer sample{"sample_variance", rgb, mean.image};
+    frame::DesignEffect design_effect;
+    const std::span<const float> effect = design_effect.measure(film);
+    for (std::size_t i = 0; i < effect.size(); ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            mean.image.values[3 * i + c] *= effect[i];
+            sample.image.values[3 * i + c] *= static_cast<float>(film.counts[i]);
+        }
+    }
+    layers.push_back(std::move(mean));
+    layers.push_back(std::move(sample));
 }
 
 std::vector<std::string> component_names(const frame::ChannelInfo& entry) {
@@ -132,7 +150,9 @@ void check(const frame::FilmTile& film) {
         const std::uint32_t first = film.channels.first_plane(entry.channel);
         const bool may_be_infinite = entry.rule == frame::MergeRule::Minimum;
         for (std::uint32_t plane = 0; plane < entry.plane_count(); ++plane) {
-            const bool is_square = plane >= entry.components;  // sums of squared deviations
+            const bool is_square = plane >= entry.components ||  // sums of squared deviations
+                                   entry.rule == frame::MergeRule::BlockVariance ||
+                                   (entry.rule == frame::MergeRule::FirstHalf && plane == 3);
             for (const float value : film.plane(first + plane)) {
                 const bool is_valid = std::isfinite(value) || (may_be_infinite && value > 0.0f);
                 if (!is_valid || (is_square && value < 0.0f)) {
@@ -169,10 +189,11 @@ void write_film_exr(const std::string& path, const FilmFile& file,
         } else if (entry.channel == picture) {
             layers.push_back({filtered ? "raw" : "", rgb, frame::resolve_picture(film)});
             if (picture != Channel::Radiance) continue;
-            layers.push_back({"variance", rgb, frame::resolve_variance_of_mean(film, Channel::Radiance)});
+            add_variances(film, layers);
+            attributes["tessera/varianceOf"] = "mean-stratified";
         } else if (entry.channel == Channel::Alpha && !filtered) {
             layers.push_back({"", {"A"}, frame::resolve(film, Channel::Alpha)});
-        } else if (entry.channel != Channel::HalfBufferA) {
+        } else if (entry.channel != Channel::HalfBufferA && !entry.is_derived()) {
             layers.push_back(
                 {std::string(entry.name), component_names(entry), frame::resolve(film, entry.channel)});
         }

@@ -9,9 +9,9 @@ SHADING_BEGIN
 inline constexpr uint ChannelRadiance = 0u, ChannelLowVariance = 1u, ChannelHighVariance = 2u,
                       ChannelAlbedo = 3u, ChannelNormal = 4u, ChannelDepth = 5u, ChannelObjectIndex = 6u,
                       ChannelAlpha = 7u, ChannelHeadlight = 8u, ChannelShadingFeature = 9u,
-                      ChannelIrradiance = 10u, ChannelHalfBufferA = 11u, ChannelColor = 12u;
+                      ChannelIrradiance = 10u, ChannelColor = 12u;
 // Components of all channels together.
-inline constexpr uint MaxSampleValues = 33u;
+inline constexpr uint MaxSampleValues = 29u;
 
 inline bool has_channel(IN(View) view, uint channel) {
     return ((view.channels >> channel) & 1u) != 0u;
@@ -30,9 +30,8 @@ inline void put_vector(INOUT(Sink) sink, IN(View) view, uint channel, vec3 value
     store_value(sink, value.z);
 }
 
-// `index`: of the sample; only its parity matters.
 GENERIC(Sink)
-inline void put_sample_values(INOUT(Sink) sink, IN(View) view, IN(PathSample) found, uint index) {
+inline void put_sample_values(INOUT(Sink) sink, IN(View) view, IN(PathSample) found) {
     const vec3 radiance = radiance_of(found);
     put_vector(sink, view, ChannelRadiance, radiance);
     put_vector(sink, view, ChannelLowVariance, found.low);
@@ -46,9 +45,6 @@ inline void put_sample_values(INOUT(Sink) sink, IN(View) view, IN(PathSample) fo
     put_vector(sink, view, ChannelHeadlight, found.headlight);
     put_number(sink, view, ChannelShadingFeature, shading_feature_of(found, view.feature_rule));
     put_vector(sink, view, ChannelIrradiance, irradiance_of(found));
-    const bool even = index % 2u == 0u;
-    put_vector(sink, view, ChannelHalfBufferA, even ? radiance : vec3(0.0f));
-    put_number(sink, view, ChannelHalfBufferA, even ? 1.0f : 0.0f);
     put_vector(sink, view, ChannelColor, radiance);
 }
 
@@ -62,9 +58,9 @@ struct SampleValues {
 inline void store_value(SampleValues& values, float value) {
     values.items[values.count++] = value;
 }
-inline SampleValues sample_values(const View& view, const PathSample& found, uint index) {
+inline SampleValues sample_values(const View& view, const PathSample& found) {
     SampleValues values;
-    put_sample_values(values, view, found, index);
+    put_sample_values(values, view, found);
     return values;
 }
 

@@ -189,7 +189,7 @@ struct View {
             row(25, "later_channels", channels(1)),
             row(26, "max_specular_bounces", &View::max_specular_bounces, InitialWhenAbsent{}));
     }
-    const char* malformed() const { return channels.is_known() ? nullptr : "a channel is unknown"; }
+    const char* malformed() const { return channels.not_renderable(); }
 };
 
 }  // namespace tessera::view

@@ -37,7 +37,8 @@ frame::ChannelSet get_channels(ByteReader& in) {
         for (std::uint64_t& word : words) word = in.get<std::uint64_t>();
     }
     const auto channels = frame::ChannelSet::from_words(words);
-    if (channels.empty() || !channels.is_known()) in.fail("a channel is unknown");
+    if (channels.empty()) in.fail("it has no channels");
+    if (const char* reason = channels.malformed()) in.fail(reason);
     return channels;
 }
 
@@ -120,6 +121,11 @@ const char* malformed_plane(const frame::ChannelInfo& info, std::uint32_t plane,
             return all([](float v) { return v >= -Largest; }) ? nullptr : "a distance is not a number";
         case frame::MergeRule::First:
             return nullptr;
+        case frame::MergeRule::BlockVariance:  // +inf as above
+            return all([](float v) { return v >= 0.0f; }) ? nullptr : "an error is negative or not a number";
+        case frame::MergeRule::FirstHalf:
+            if (plane == 3 && !all([](float v) { return v >= 0.0f; })) return "a count is negative";
+            return finite() ? nullptr : "a mean is not finite";
     }
     return nullptr;
 }

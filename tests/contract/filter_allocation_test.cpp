@@ -65,7 +65,7 @@ TEST(InputsAllocation, NoneForTheNextFilmOfTheSameSize) {
         return room(300, 260, x, y, sample);
     };
     const frame::FilmTile film = synthetic_film(
-        300, 260, 4, {Radiance, Albedo, Normal, Depth, ObjectIndex, HalfBufferA, Alpha}, sampler);
+        300, 260, 4, {Radiance, Albedo, Normal, Depth, ObjectIndex, FirstHalf, Alpha}, sampler);
     const view::View view = synthetic_view(300, 260);
     Inputs inputs;
     resolve_inputs(film, view, nullptr, inputs);

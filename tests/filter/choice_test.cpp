@@ -46,6 +46,20 @@ TEST(FilterChoice, ColorIsEnoughWithoutAFilter) {
     EXPECT_EQ(lacks("gauss", {Radiance}), frame::ChannelSet{});
 }
 
+// Errors of stratified means are wanted, but films without them can be filtered.
+TEST(FilterChoice, FiltersThatReadVariancesWantTheirBlocks) {
+    using enum frame::Channel;
+    const frame::ChannelSet most = frame::ChannelSet::all() - frame::ChannelSet{BlockVariance};
+    for (const char* name : {"fdf", "nfor", "nlm", "pixel", "psvgf", "statmc"}) {
+        const Choice choice = *parse_choice(name, catalog());
+        EXPECT_TRUE(missing_channels(choice, most).empty()) << name;
+        EXPECT_EQ(wanted_channels(choice, most), frame::ChannelSet{BlockVariance}) << name;
+        EXPECT_TRUE(wanted_channels(choice, frame::ChannelSet::all()).empty()) << name;
+    }
+    for (const char* name : {"none", "gauss", "bilateral", "guided"})
+        EXPECT_TRUE(wanted_channels(*parse_choice(name, catalog()), most).empty()) << name;
+}
+
 TEST(FilterChoice, EveryDescriptionIsUsable) {
     for (const FilterEntry& entry : catalog()) {
         const Description& filter = entry.description;

@@ -46,7 +46,7 @@ double error_ratio(const std::string& choice, ConsistencyScene scene, std::uint6
         };
     }
     const frame::ChannelSet channels{frame::Channel::Radiance, frame::Channel::Albedo, frame::Channel::Normal,
-                                     frame::Channel::Depth, frame::Channel::HalfBufferA};
+                                     frame::Channel::Depth, frame::Channel::FirstHalf};
     const Inputs inputs = synthetic_inputs(ConsistencyWidth, ConsistencyHeight, n, sampler, channels);
     return relative_squared_error(run_filter(choice, inputs).picture, truth) /
            relative_squared_error(inputs.mean(frame::Channel::Radiance), truth);

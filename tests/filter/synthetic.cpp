@@ -15,7 +15,7 @@ namespace {
 
 using frame::Channel;
 
-void append(std::vector<float>& values, const SyntheticSample& s, frame::ChannelSet channels, bool even) {
+void append(std::vector<float>& values, const SyntheticSample& s, frame::ChannelSet channels) {
     const auto add = [&](Channel channel, const auto& numbers) {
         if (channels.contains(channel)) values.insert(values.end(), numbers.begin(), numbers.end());
     };
@@ -31,8 +31,6 @@ void append(std::vector<float>& values, const SyntheticSample& s, frame::Channel
     add(Channel::Headlight, s.headlight);
     add(Channel::ShadingFeature, std::array{s.shading});
     add(Channel::Irradiance, s.irradiance);
-    const float one = even ? 1.0f : 0.0f;
-    add(Channel::HalfBufferA, std::array{one * radiance[0], one * radiance[1], one * radiance[2], one});
     add(Channel::Color, radiance);
 }
 
@@ -68,7 +66,7 @@ frame::FilmTile synthetic_film(std::uint32_t width, std::uint32_t height, std::u
         for (std::uint32_t y = 0; y < height; ++y) {
             for (std::uint32_t x = 0; x < width; ++x) {
                 values.clear();
-                append(values, sampler(x, y, i), channels, i % 2 == 0);
+                append(values, sampler(x, y, i), channels);
                 frame::put_sample(tile, std::size_t{y} * width + x, values);
             }
         }

@@ -54,5 +54,20 @@ TEST(Channels, ASetHoldsAnyOf128) {
     }
 }
 
+TEST(Channels, DerivedOnesNeedRadiance) {
+    using enum Channel;
+    EXPECT_EQ((ChannelSet{Radiance, BlockVariance, FirstHalf}).malformed(), nullptr);
+    EXPECT_NE((ChannelSet{Color, BlockVariance}).malformed(), nullptr);
+    EXPECT_NE((ChannelSet{FirstHalf}).not_renderable(), nullptr);
+}
+
+TEST(Channels, HalfBuffersOfOldFilmsAreReadButNotRendered) {
+    const ChannelSet old{Channel::Radiance, Channel::HalfBufferA};
+    EXPECT_EQ(old.malformed(), nullptr);
+    EXPECT_NE(std::string_view(old.not_renderable()).find("first_half"), std::string_view::npos);
+    EXPECT_FALSE(ChannelSet::all().contains(Channel::HalfBufferA));
+    EXPECT_EQ(ChannelSet::all().not_renderable(), nullptr);
+}
+
 }  // namespace
 }  // namespace tessera::frame

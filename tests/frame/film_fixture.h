@@ -9,8 +9,8 @@
 
 namespace tessera::frame {
 
-inline constexpr ChannelSet SomeChannels{Channel::Radiance, Channel::Albedo, Channel::Depth,
-                                         Channel::ObjectIndex};
+inline constexpr ChannelSet SomeChannels{Channel::Radiance,    Channel::Albedo,        Channel::Depth,
+                                         Channel::ObjectIndex, Channel::BlockVariance, Channel::FirstHalf};
 inline constexpr Rect SmallTile{4, 8, 5, 3};
 
 // The film of one sample: a pure function of its index, as a back-end's is. Some samples are not finite, some

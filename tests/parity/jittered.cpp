@@ -73,8 +73,7 @@ frame::FilmTile JitteredEmbree::film(const view::View& view, const Rect& tile, s
             const float time = shading::sample_time(scene.features, record, px, py, sample);
             const JitteredContext context{{{}, {scene, record, adapter_.scene(), time}}};
             const shading::Path path = shading::trace_sample(context, px, py, sample);
-            const shading::SampleValues values =
-                shading::sample_values(record, path.found, static_cast<std::uint32_t>(sample));
+            const shading::SampleValues values = shading::sample_values(record, path.found);
             frame::put_sample(film, pixel, {values.items, values.count});
         }
     }

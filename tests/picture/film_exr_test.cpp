@@ -9,6 +9,7 @@
 
 #include "mediator/base/error.h"
 #include "mediator/base/random.h"
+#include "mediator/frame/design_effect.h"
 #include "mediator/frame/resolve.h"
 #include "mediator/picture/exr_reader.h"
 #include "mediator/picture/picture_encoder.h"
@@ -57,6 +58,25 @@ TEST_F(FilmExr, RoundTripsStatisticsBitByBit) {
     for (std::size_t i = 0; i < main.image.pixel_count(); ++i) {
         for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(main.image.pixel(i)[c], filtered.pixel(i)[c]);
     }
+}
+
+// Variance of the mean, of stratified samples, and of single samples.
+TEST_F(FilmExr, SaysWhatItsVariancesAreOf) {
+    const frame::FilmTile original = film();
+    write_film_exr(file("a.exr"), {37, 23, original, {}}, {}, Statistics::Include);
+    EXPECT_EQ(read_film_exr(file("a.exr")).attributes.at("tessera/varianceOf"), "mean-stratified");
+    const frame::Image independent = frame::resolve_variance_of_mean(original, frame::Channel::Radiance);
+    frame::DesignEffect design_effect;
+    const std::span<const float> effect = design_effect.measure(original);
+    const frame::Image mean = read_exr(file("a.exr"), "variance").image,
+                       sample = read_exr(file("a.exr"), "sample_variance").image;
+    bool is_reduced = false;
+    for (std::size_t i = 0; i < independent.values.size(); ++i) {
+        EXPECT_EQ(mean.values[i], independent.values[i] * effect[i / 3]);
+        EXPECT_FLOAT_EQ(sample.values[i], independent.values[i] * 5.0f);
+        is_reduced = is_reduced || effect[i / 3] < 1.0f;
+    }
+    EXPECT_TRUE(is_reduced);
 }
 
 TEST_F(FilmExr, WithOnlyColorColorIsThePicture) {

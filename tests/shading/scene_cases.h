@@ -378,9 +378,9 @@ inline Sink with_vector(IN(Case) c, vec3 value) {
     put_vector(sink, c.context.view, ChannelNormal, value);
     return sink;
 }
-inline Sink with_values(IN(Case) c, uint index) {
+inline Sink with_values(IN(Case) c) {
     Sink sink = empty_sink();
-    put_sample_values(sink, c.context.view, c.path.found, index);
+    put_sample_values(sink, c.context.view, c.path.found);
     return sink;
 }
 

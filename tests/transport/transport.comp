@@ -39,5 +39,5 @@ void main() {
     const uint pixel = i % pixels;
     const Path path = trace_sample(context, pixel % context.view.width, pixel / context.view.width, i / pixels);
     Sink sink = Sink(results, i * MaxSampleValues);
-    put_sample_values(sink, context.view, path.found, i / pixels);
+    put_sample_values(sink, context.view, path.found);
 }

@@ -193,7 +193,7 @@ std::vector<float> on_host(const backend::SceneTables& tables, const shading::Vi
     for (std::uint32_t i = 0; i < Size * Size * SamplesPerPixel; ++i) {
         const std::uint32_t pixel = i % (Size * Size), index = i / (Size * Size);
         const shading::Path path = shading::trace_sample(context, pixel % Size, pixel / Size, index);
-        const shading::SampleValues values = shading::sample_values(view, path.found, index);
+        const shading::SampleValues values = shading::sample_values(view, path.found);
         EXPECT_EQ(values.count, shading::MaxSampleValues);
         results.insert(results.end(), values.items, values.items + values.count);
     }

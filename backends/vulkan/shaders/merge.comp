@@ -9,7 +9,8 @@
 layout(local_size_x_id = 0) in;
 
 // As in merge_columns.h.
-const uint Moments = 0u, Sum = 1u, Minimum = 2u, Maximum = 3u, Nearest = 4u, First = 5u, Count = 6u;
+const uint Moments = 0u, Sum = 1u, Minimum = 2u, Maximum = 3u, Nearest = 4u, First = 5u, Count = 6u,
+           BlockVariance = 7u, FirstHalf = 8u;
 struct Column {
     uint rule;
     uint value;
@@ -119,6 +120,69 @@ void merge_sum(Column column, uint pixel, inout bool leaves) {
     put(column.plane, pixel, floatBitsToUint(sum));
 }
 
+vec3 radiance_of(Column column, uint pixel, uint s) {
+    return vec3(uintBitsToFloat(value_of(column.value, pixel, s)),
+                uintBitsToFloat(value_of(column.value + 1u, pixel, s)),
+                uintBitsToFloat(value_of(column.value + 2u, pixel, s)));
+}
+
+// As in frame/merge.cpp.
+float squared_difference(vec3 a, vec3 b, inout bool leaves) {
+    const vec3 weights = vec3(0.2126, 0.7152, 0.0722);
+    float sum = 0.0;
+    for (int c = 0; c < 3; ++c) {
+        precise const float difference = a[c] - b[c];
+        precise const float square = difference * difference;
+        precise const float part = weights[c] * square;
+        leaves = leaves ||
+                 (a[c] != b[c] && (left_range(difference) || left_range(square) || left_range(part)));
+        sum = added(sum, part, leaves);
+    }
+    return sum;
+}
+
+float halved(float x, inout bool leaves) {
+    precise const float half_of = x * 0.5;
+    leaves = leaves || (x != 0.0 && left_range(half_of));
+    return half_of;
+}
+
+// Channels that follow from the means of radiance. Those are checked by their own columns.
+void merge_derived(Column column, uint pixel, inout bool leaves) {
+    vec3 means[MaxLevel + 1u];
+    float tops[MaxLevel + 1u];
+    vec3 first_half = vec3(0.0);
+    float top = 0.0, below = 0.0;
+    for (uint s = 0u; s < 1u << job.level; ++s) {
+        vec3 mean = radiance_of(column, pixel, s);
+        top = 0.0;
+        below = 0.0;
+        uint level = 0u;
+        for (uint carry = s; (carry & 1u) == 1u; carry >>= 1u) {
+            first_half = means[level];
+            if (column.rule == BlockVariance) {
+                below = halved(added(tops[level], top, leaves), leaves);
+                top = halved(halved(squared_difference(first_half, mean, leaves), leaves), leaves);
+            }
+            for (int c = 0; c < 3; ++c) {
+                precise const float sum = first_half[c] + mean[c];
+                precise const float midpoint = sum * 0.5;
+                mean[c] = midpoint;
+            }
+            level += 1u;
+        }
+        means[level] = mean;
+        tops[level] = top;
+    }
+    if (column.rule == BlockVariance) {
+        put(column.plane, pixel, floatBitsToUint(top));
+        put(column.plane + 1u, pixel, floatBitsToUint(below));
+        return;
+    }
+    for (int c = 0; c < 3; ++c) put(column.plane + uint(c), pixel, floatBitsToUint(first_half[c]));
+    put(column.plane + 3u, pixel, floatBitsToUint(float((1u << job.level) / 2u)));
+}
+
 // The first record with the smallest (or largest) key.
 void keep_one(Column column, uint pixel, inout bool leaves) {
     uint best = 0u;
@@ -151,6 +215,8 @@ void main() {
         merge_moments(column, pixel, leaves);
     } else if (column.rule == Sum) {
         merge_sum(column, pixel, leaves);
+    } else if (column.rule == BlockVariance || column.rule == FirstHalf) {
+        merge_derived(column, pixel, leaves);
     } else if (column.rule == Count) {
         add_counts(column, pixel);
     } else {

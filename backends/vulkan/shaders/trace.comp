@@ -169,6 +169,6 @@ void main() {
 
     const Path path = trace(context, x, y, index, at);
     Sink sink = Sink(job.values, item, job.item_count);
-    put_sample_values(sink, context.view, path.found, uint(index));
+    put_sample_values(sink, context.view, path.found);
     store_value(sink, float_from_bits(path.rays));
 }

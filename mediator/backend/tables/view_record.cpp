@@ -39,8 +39,7 @@ static_assert(is_number_of(shading::ChannelRadiance, Channel::Radiance) &&
               is_number_of(shading::ChannelHeadlight, Channel::Headlight) &&
               is_number_of(shading::ChannelShadingFeature, Channel::ShadingFeature) &&
               is_number_of(shading::ChannelIrradiance, Channel::Irradiance) &&
-              is_number_of(shading::ChannelHalfBufferA, Channel::HalfBufferA) &&
-              is_number_of(shading::ChannelColor, Channel::Color) && frame::ChannelCount == 13);
+              is_number_of(shading::ChannelColor, Channel::Color) && frame::ChannelCount == 15);
 
 std::uint32_t recorded_quantities(const view::View& view) {
     const bool feature = view.channels.contains(Channel::ShadingFeature);

@@ -1,0 +1,104 @@
+#include "mediator/frame/design_effect.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace tessera::frame {
+
+namespace {
+
+constexpr std::size_t Radius = 4, Rows = 2 * Radius + 1;
+
+// Sums over pixels: errors of blocks and of their halves (merge.h), variance of the means of independent samples, and
+// variance of the first of these.
+enum Term : std::size_t { Top, Below, Independent, Uncertainty, TermCount };
+
+// One row, term after term; 0 where nothing is known.
+void fill_row(const FilmTile& film, std::size_t y, std::span<double> row) {
+    constexpr std::array Weights{0.2126, 0.7152, 0.0722};  // as in merge.cpp
+    const std::size_t width = row.size() / TermCount;
+    const std::uint32_t own = film.channels.first_plane(Channel::BlockVariance);
+    const std::uint32_t m2 = film.channels.first_plane(Channel::Radiance) + 3;
+    std::ranges::fill(row, 0.0);
+    for (std::size_t x = 0; x < width; ++x) {
+        const std::size_t i = y * width + x;
+        if (film.counts[i] < 2) continue;
+        const double n = film.counts[i], top = film.plane(own)[i], below = film.plane(own + 1)[i];
+        double variance = 0.0;
+        for (std::uint32_t c = 0; c < 3; ++c)
+            variance += Weights[c] * double(film.plane(m2 + c)[i]) / (n * (n - 1.0));
+        if (!std::isfinite(variance) || !std::isfinite(top) || !std::isfinite(below)) continue;
+        row[Top * width + x] = top;
+        row[Below * width + x] = below;
+        row[Independent * width + x] = variance;
+        // Of a squared difference of mean e that is normally distributed, the square has mean 3 e^2 and the variance is
+        // 2 e^2. Of n - 1 such differences `variance` is the mean, and this is one of them.
+        row[Uncertainty * width + x] = 2.0 / 3.0 * top * top * (n - 2.0) / (n - 1.0);
+    }
+}
+
+// Sums over 2 Radius + 1 neighbours, fewer at the border.
+void pool_row(std::span<const double> from, std::span<double> to) {
+    const std::size_t width = from.size();
+    for (std::size_t x = 0; x < width; ++x) {
+        const std::size_t end = std::min(width, x + Radius + 1);
+        double sum = 0.0;
+        for (std::size_t k = x < Radius ? 0 : x - Radius; k < end; ++k) sum += from[k];
+        to[x] = sum;
+    }
+}
+
+// The deviation of the ratio from 1 is shrunk by its uncertainty (James and Stein 1961, positive part), so that noise alone
+// makes no error smaller.
+float effect(double top, double below, double independent, double uncertainty) {
+    if (!(independent > 0.0)) return 1.0f;
+    constexpr double Random = 2.0, Edge = 2.8284271247461903, Least = 1e-6;
+    const double deviation = 1.0 - top / independent;
+    if (!(deviation > 0.0)) return 1.0f;
+    const double noise = uncertainty / (independent * independent);
+    const double kept = std::max(0.0, 1.0 - noise / (deviation * deviation));
+    const double ratio = top > 0.0 ? std::clamp(below / top, Random, Edge) : Edge;
+    const double growth = Random + (ratio - Random) * kept;
+    return static_cast<float>(std::clamp((1.0 - deviation * kept) / std::sqrt(growth - 1.0), Least, 1.0));
+}
+
+}  // namespace
+
+std::span<const float> DesignEffect::measure(const FilmTile& film) {
+    effects_.assign(film.pixel_count(), 1.0f);
+    const bool is_known =
+        film.channels.contains(Channel::BlockVariance) && film.channels.contains(Channel::Radiance);
+    const auto is_single = [](std::uint32_t n) { return n < 2; };
+    if (!is_known || std::ranges::all_of(film.counts, is_single)) return effects_;
+    const auto width = static_cast<std::size_t>(film.rect.width);
+    const auto height = static_cast<std::size_t>(film.rect.height);
+    const std::size_t row_size = TermCount * width;
+    // The last rows, pooled along x, one after another in a ring; one row; its sum over the rows.
+    scratch_.resize((Rows + 2) * row_size);
+    const std::span<double> all(scratch_);
+    const std::span<double> row = all.subspan(Rows * row_size, row_size);
+    const std::span<double> sums = all.subspan((Rows + 1) * row_size, row_size);
+    for (std::size_t last = 0; last < height + Radius; ++last) {
+        if (last < height) {
+            fill_row(film, last, row);
+            for (std::size_t term = 0; term < TermCount; ++term)
+                pool_row(row.subspan(term * width, width),
+                         all.subspan((last % Rows) * row_size + term * width, width));
+        }
+        if (last < Radius) continue;
+        const std::size_t y = last - Radius;
+        std::ranges::fill(sums, 0.0);
+        for (std::size_t k = y < Radius ? 0 : y - Radius; k <= std::min(last, height - 1); ++k) {
+            const double* pooled = &scratch_[(k % Rows) * row_size];
+            for (std::size_t i = 0; i < row_size; ++i) sums[i] += pooled[i];
+        }
+        for (std::size_t x = 0; x < width; ++x) {
+            effects_[y * width + x] = effect(sums[Top * width + x], sums[Below * width + x],
+                                             sums[Independent * width + x], sums[Uncertainty * width + x]);
+        }
+    }
+    return effects_;
+}
+
+}  // namespace tessera::frame
