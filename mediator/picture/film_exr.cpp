@@ -190,7 +190,7 @@ void write_film_exr(const std::string& path, const FilmFile& file,
             layers.push_back({filtered ? "raw" : "", rgb, frame::resolve_picture(film)});
             if (picture != Channel::Radiance) continue;
             add_variances(film, layers);
-            attributes["tessera/varianceOf"] = "mean-stratified";
+            attributes["tessera.varianceOf"] = "mean-stratified";
         } else if (entry.channel == Channel::Alpha && !filtered) {
             layers.push_back({"", {"A"}, frame::resolve(film, Channel::Alpha)});
         } else if (entry.channel != Channel::HalfBufferA && !entry.is_derived()) {

@@ -64,7 +64,7 @@ TEST_F(FilmExr, RoundTripsStatisticsBitByBit) {
 TEST_F(FilmExr, SaysWhatItsVariancesAreOf) {
     const frame::FilmTile original = film();
     write_film_exr(file("a.exr"), {37, 23, original, {}}, {}, Statistics::Include);
-    EXPECT_EQ(read_film_exr(file("a.exr")).attributes.at("tessera/varianceOf"), "mean-stratified");
+    EXPECT_EQ(read_film_exr(file("a.exr")).attributes.at("tessera.varianceOf"), "mean-stratified");
     const frame::Image independent = frame::resolve_variance_of_mean(original, frame::Channel::Radiance);
     frame::DesignEffect design_effect;
     const std::span<const float> effect = design_effect.measure(original);

@@ -7,7 +7,7 @@ namespace tessera::tools::bench {
 std::vector<FilmGroup> film_groups(const std::vector<filter::Choice>& filters) {
     std::vector<FilmGroup> groups;
     for (std::size_t i = 0; i < filters.size(); ++i) {
-        const frame::ChannelSet channels = filters[i].channels();
+        const frame::ChannelSet channels = filter::wanted_channels(filters[i], {});
         const view::PathClass path_class = filters[i].entry->description.path_class;
         auto group = std::find_if(groups.begin(), groups.end(),
                                   [&](const FilmGroup& g) { return g.path_class == path_class; });

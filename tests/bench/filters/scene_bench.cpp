@@ -105,7 +105,7 @@ class SceneBench {
                 Row row =
                     measure_filter(runs[i], choice, inputs, comparison, spp, result.copy_bytes_per_second);
                 row.sampling_seconds = double(spp) * double(width) * double(height) *
-                                       cost_.of(choice.channels(), group.path_class, stop_);
+                                       cost_.of(filter::wanted_channels(choice, {}), group.path_class, stop_);
                 result.rows.push_back(std::move(row));
             }
         }

@@ -47,7 +47,7 @@ class SpeedBench {
     const filter::Inputs* inputs(const filter::Choice& choice, Size size) {
         progress_.say("speed of " + to_text(choice) + " at " + std::to_string(size.width) + "x" +
                       std::to_string(size.height));
-        const view::View view = sampler_.view(size.width, size.height, choice.channels(),
+        const view::View view = sampler_.view(size.width, size.height, filter::wanted_channels(choice, {}),
                                               choice.entry->description.path_class, 0);
         if (view == view_) return &inputs_;
         GrowingFilm film = sampler_.film(view);

@@ -18,10 +18,12 @@ using namespace tessera::frame;
 constexpr ChannelSet AllChannels{Channel::Radiance,   Channel::LowVariance, Channel::HighVariance,
                                  Channel::Albedo,     Channel::Normal,      Channel::Depth,
                                  Channel::ObjectIndex};
+constexpr ChannelSet WithErrors = AllChannels | ChannelSet{Channel::BlockVariance};
+constexpr ChannelSet WithHalves = WithErrors | ChannelSet{Channel::FirstHalf};
 constexpr Rect Tile{0, 0, 64, 64};
 
-FilmTile filled(SampleBlock block, std::uint64_t seed) {
-    FilmTile tile(Tile, block, AllChannels);
+FilmTile filled(SampleBlock block, std::uint64_t seed, const ChannelSet& channels = AllChannels) {
+    FilmTile tile(Tile, block, channels);
     CounterRandom random(seed);
     std::vector<float> sample(17);
     for (std::size_t pixel = 0; pixel < tile.pixel_count(); ++pixel) {
@@ -48,8 +50,8 @@ void memory_copy(benchmark::State& state) {
 }
 BENCHMARK(memory_copy);
 
-void merge_siblings(benchmark::State& state) {
-    const FilmTile a = filled({0, 0}, 1), b = filled({1, 0}, 2);
+void merge_siblings(benchmark::State& state, const ChannelSet& channels) {
+    const FilmTile a = filled({0, 0}, 1, channels), b = filled({1, 0}, 2, channels);
     FilmTile into = a;
     for (auto _ : state) {
         into = a;
@@ -58,7 +60,9 @@ void merge_siblings(benchmark::State& state) {
     }
     set_bytes(state, 5 * a.byte_size());  // the copy reads and writes one, the merge reads two and writes one
 }
-BENCHMARK(merge_siblings);
+BENCHMARK_CAPTURE(merge_siblings, plain, AllChannels);
+BENCHMARK_CAPTURE(merge_siblings, and_block_variance, WithErrors);
+BENCHMARK_CAPTURE(merge_siblings, and_first_half, WithHalves);
 
 void put_samples(benchmark::State& state) {
     FilmTile tile(Tile, {0, 0}, AllChannels);
