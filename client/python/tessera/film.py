@@ -20,6 +20,8 @@ class Rule(Enum):
     MAXIMUM = "maximum"
     NEAREST = "nearest"  # the key, then the value
     FIRST = "first"
+    BLOCK_VARIANCE = "block_variance"  # squared half difference of the two halves, and the mean of those of the halves
+    FIRST_HALF = "first_half"  # means of the first half of the samples, and their count
 
 
 # By their number on the wire: name, rule, components.
