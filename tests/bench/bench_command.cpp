@@ -8,14 +8,17 @@
 #include "tests/bench/filters/pictures.h"
 #include "tests/bench/live/displays_command.h"
 #include "tests/bench/live/live_command.h"
+#include "tests/bench/variance/variance_command.h"
 
 namespace tessera::tools::bench {
 
 Command bench_command(cli::CommandLine& program) {
-    cli::CommandLine& line =
-        program.command("bench", "Benchmarks: error and time of denoisers, back-ends, edits and displays.");
-    const std::vector<Command> commands{backends_command(line), displays_command(line), filters_command(line),
-                                        live_command(line), pictures_command(line)};
+    cli::CommandLine& line = program.command(
+        "bench",
+        "Benchmarks: error and time of denoisers, truth of variances, back-ends, edits and displays.");
+    const std::vector<Command> commands{backends_command(line), displays_command(line),
+                                        filters_command(line),  live_command(line),
+                                        pictures_command(line), variance_command(line)};
     return {"bench", [commands](std::string_view chosen) {
                 const auto command = std::ranges::find(commands, chosen, &Command::name);
                 return command->run(chosen);

@@ -34,24 +34,6 @@ std::vector<std::string> split_filters(const std::string& text) {
     return filters;
 }
 
-Expected<std::vector<std::uint64_t>> parse_spp(const std::string& text) {
-    std::vector<std::uint64_t> spp;
-    for (const std::string& item : split_list(text)) {
-        std::uint64_t value = 0;
-        const auto result = std::from_chars(item.data(), item.data() + item.size(), value);
-        if (result.ec != std::errc() || result.ptr != item.data() + item.size() || value == 0 ||
-            value > MostSpp) {
-            return wrong("--spp", "'" + item + "' is not a number of samples from 1 to " +
-                                      std::to_string(MostSpp) + ": write 1,4,16,64");
-        }
-        spp.push_back(value);
-    }
-    std::sort(spp.begin(), spp.end());
-    spp.erase(std::unique(spp.begin(), spp.end()), spp.end());
-    if (spp.empty()) return wrong("--spp", "the list is empty: write 1,4,16,64");
-    return spp;
-}
-
 std::vector<std::uint64_t> up_to(const std::vector<std::uint64_t>& spp, std::uint64_t most) {
     std::vector<std::uint64_t> kept;
     std::copy_if(spp.begin(), spp.end(), std::back_inserter(kept),
@@ -78,6 +60,24 @@ Expected<std::vector<filter::Choice>> choose_filters(const std::string& text,
 }
 
 }  // namespace
+
+Expected<std::vector<std::uint64_t>> parse_spp(const std::string& text) {
+    std::vector<std::uint64_t> spp;
+    for (const std::string& item : split_list(text)) {
+        std::uint64_t value = 0;
+        const auto result = std::from_chars(item.data(), item.data() + item.size(), value);
+        if (result.ec != std::errc() || result.ptr != item.data() + item.size() || value == 0 ||
+            value > MostSpp) {
+            return wrong("--spp", "'" + item + "' is not a number of samples from 1 to " +
+                                      std::to_string(MostSpp) + ": write 1,4,16,64");
+        }
+        spp.push_back(value);
+    }
+    std::sort(spp.begin(), spp.end());
+    spp.erase(std::unique(spp.begin(), spp.end()), spp.end());
+    if (spp.empty()) return wrong("--spp", "the list is empty: write 1,4,16,64");
+    return spp;
+}
 
 Expected<BenchPlan> parse_options(const BenchOptions& options, std::span<const filter::FilterEntry> table) {
     BenchPlan plan;

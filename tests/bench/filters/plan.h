@@ -42,6 +42,9 @@ struct BenchPlan {
     std::uint32_t jobs = 1;
 };
 
+// "4,16,64", ascending without repetitions. InvalidInput names --spp.
+Expected<std::vector<std::uint64_t>> parse_spp(const std::string& text);
+
 // InvalidInput names the option and the remedy.
 Expected<BenchPlan> parse_options(const BenchOptions& options, std::span<const filter::FilterEntry> table);
 
