@@ -59,7 +59,7 @@ Layer statistics_layer(const frame::FilmTile& film, const frame::ChannelInfo& en
     return layer;
 }
 
-// Variance of the mean, of stratified samples, and of single samples.
+// Variance of the mean (of stratified samples, if the film has their block variance) and of single samples.
 void add_variances(const frame::FilmTile& film, std::vector<Layer>& layers) {
     const std::vector<std::string> rgb{"R", "G", "B"};
     Layer mean{"variance", rgb, frame::resolve_variance_of_mean(film, frame::Channel::Radiance)};
@@ -150,12 +150,12 @@ void check(const frame::FilmTile& film) {
         const std::uint32_t first = film.channels.first_plane(entry.channel);
         const bool may_be_infinite = entry.rule == frame::MergeRule::Minimum;
         for (std::uint32_t plane = 0; plane < entry.plane_count(); ++plane) {
-            const bool is_square = plane >= entry.components ||  // sums of squared deviations
-                                   entry.rule == frame::MergeRule::BlockVariance ||
-                                   (entry.rule == frame::MergeRule::FirstHalf && plane == 3);
+            const bool is_negative_damage = plane >= entry.components ||  // sums of squared deviations
+                                            entry.rule == frame::MergeRule::BlockVariance ||
+                                            (entry.rule == frame::MergeRule::FirstHalf && plane == 3);
             for (const float value : film.plane(first + plane)) {
                 const bool is_valid = std::isfinite(value) || (may_be_infinite && value > 0.0f);
-                if (!is_valid || (is_square && value < 0.0f)) {
+                if (!is_valid || (is_negative_damage && value < 0.0f)) {
                     throw Error(ErrorCode::InvalidInput,
                                 "channel " + std::string(entry.name) +
                                     " holds a value that no film has: the file is damaged");
@@ -190,7 +190,8 @@ void write_film_exr(const std::string& path, const FilmFile& file,
             layers.push_back({filtered ? "raw" : "", rgb, frame::resolve_picture(film)});
             if (picture != Channel::Radiance) continue;
             add_variances(film, layers);
-            attributes["tessera.varianceOf"] = "mean-stratified";
+            attributes["tessera.varianceOf"] =
+                film.channels.contains(Channel::BlockVariance) ? "mean-stratified" : "mean-independent";
         } else if (entry.channel == Channel::Alpha && !filtered) {
             layers.push_back({"", {"A"}, frame::resolve(film, Channel::Alpha)});
         } else if (entry.channel != Channel::HalfBufferA && !entry.is_derived()) {

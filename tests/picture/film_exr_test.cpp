@@ -79,6 +79,19 @@ TEST_F(FilmExr, SaysWhatItsVariancesAreOf) {
     EXPECT_TRUE(is_reduced);
 }
 
+// Older films have half buffers of even samples, and no block variances.
+TEST_F(FilmExr, OldFilmsAreRead) {
+    frame::FilmTile old({0, 0, 5, 4}, {0, 0}, {frame::Channel::Radiance, frame::Channel::HalfBufferA});
+    std::ranges::fill(old.counts, 16u);
+    for (std::size_t i = 0; i < old.planes.size(); ++i) old.planes[i] = 0.25f * float(i);
+    write_film_exr(file("a.exr"), {5, 4, old, {}}, {}, Statistics::Include);
+    const FilmFile back = read_film_exr(file("a.exr"));
+    EXPECT_TRUE(frame::identical_bits(back.film, old));
+    EXPECT_EQ(back.attributes.at("tessera.varianceOf"), "mean-independent");
+    EXPECT_EQ(read_exr(file("a.exr"), "variance").image.values,
+              frame::resolve_variance_of_mean(old, frame::Channel::Radiance).values);
+}
+
 TEST_F(FilmExr, WithOnlyColorColorIsThePicture) {
     const frame::FilmTile color = frame::with_channels(film(), {frame::Channel::Color});
     write_film_exr(file("a.exr"), {37, 23, color, {}}, {}, Statistics::Include);
@@ -130,6 +143,10 @@ TEST_F(FilmExr, ImpossibleValuesAreDamage) {
         frame::FilmTile bad = film();
         bad.plane(4)[7] = value;  // M2 of green radiance
         write_film_exr(file("a.exr"), {37, 23, bad, {}}, {}, Statistics::Include);
+        EXPECT_THROW(read_film_exr(file("a.exr")), Error) << value;
+        frame::FilmTile worse = film();
+        worse.plane(worse.channels.first_plane(frame::Channel::BlockVariance))[7] = value;
+        write_film_exr(file("a.exr"), {37, 23, worse, {}}, {}, Statistics::Include);
         EXPECT_THROW(read_film_exr(file("a.exr")), Error) << value;
     }
 }
