@@ -84,7 +84,7 @@ void merge_values(FilmTile& into, const FilmTile& later, std::uint32_t first, st
     }
 }
 
-// Means of radiance of one pixel.
+// The means of a film's radiance.
 struct Radiances {
     std::array<std::span<const float>, 3> planes;
     explicit Radiances(const FilmTile& film) {
@@ -150,20 +150,21 @@ void merge_block_variance(FilmTile& into, const FilmTile& later, std::uint32_t f
 
 void merge_first_half(FilmTile& into, const FilmTile& later, std::uint32_t first, bool are_siblings) {
     const std::span<float> count = into.plane(first + 3);
-    const Radiances all(into);
+    if (are_siblings) {
+        const Radiances all(into);
+        for (std::uint32_t c = 0; c < 3; ++c) std::ranges::copy(all.planes[c], into.plane(first + c).begin());
+        for (std::size_t i = 0; i < count.size(); ++i) count[i] = static_cast<float>(into.counts[i]);
+        return;
+    }
+    const std::span<const float> more = later.plane(first + 3);
     for (std::size_t i = 0; i < count.size(); ++i) {
-        const float more = are_siblings ? 0.0f : later.plane(first + 3)[i];
-        if (are_siblings) {
-            count[i] = static_cast<float>(into.counts[i]);
-            for (std::uint32_t c = 0; c < 3; ++c) into.plane(first + c)[i] = all.planes[c][i];
-        } else if (more > 0.0f) {
-            const float share = more / (count[i] + more);
-            for (std::uint32_t c = 0; c < 3; ++c) {
-                float& mean = into.plane(first + c)[i];
-                mean -= (mean - later.plane(first + c)[i]) * share;
-            }
-            count[i] += more;
+        if (!(more[i] > 0.0f)) continue;
+        const float share = more[i] / (count[i] + more[i]);
+        for (std::uint32_t c = 0; c < 3; ++c) {
+            float& mean = into.plane(first + c)[i];
+            mean -= (mean - later.plane(first + c)[i]) * share;
         }
+        count[i] += more[i];
     }
 }
 

@@ -222,7 +222,24 @@ TEST(DesignEffect, OfIndependentSamplesIsNearlyOne) {
     }
 }
 
-// A film of the given means and second moments.
+// Counts that floats round.
+TEST(BlockVariance, OfBlocksOfABillionSamplesIsExact) {
+    constexpr std::uint32_t Count = (1u << 30) - 1;
+    FilmTile a({0, 0, 1, 1}, {0, 30}, Channels), b({0, 0, 1, 1}, {std::uint64_t{1} << 30, 30}, Channels);
+    a.counts = {Count};
+    b.counts = {Count};
+    for (std::uint32_t c = 0; c < 3; ++c) {
+        a.plane(c)[0] = 1.0f;
+        b.plane(c)[0] = 1.5f;
+        a.plane(3 + c)[0] = b.plane(3 + c)[0] = 1e9f;
+    }
+    merge(a, b);
+    EXPECT_EQ(a.counts[0], 2 * Count);
+    EXPECT_FLOAT_EQ(static_cast<float>(top_of(a, 0)), 0.0625f);
+    EXPECT_EQ(a.plane(a.channels.first_plane(Channel::FirstHalf))[0], 1.0f);
+    for (const float effect : design_effect(a)) EXPECT_EQ(effect, 1.0f);
+}
+
 TEST(DesignEffect, IsOneWhereNothingIsKnown) {
     const auto all_ones = [](const FilmTile& film) {
         for (const float effect : design_effect(film)) {

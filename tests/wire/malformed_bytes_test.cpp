@@ -162,6 +162,20 @@ TEST(MalformedBytes, UnknownChannelsAreRefused) {
     }
 }
 
+TEST(MalformedBytes, ViewsOfChannelsThatCannotBeRenderedAreRefused) {
+    using frame::Channel;
+    const auto reason = [](frame::ChannelSet channels) {
+        OpenView open{some_view()};
+        open.view.channels = channels;
+        const auto decoded = decode_control(encode(ControlMessage(open)));
+        return decoded ? std::string() : std::string(decoded.error().what());
+    };
+    EXPECT_EQ(reason({Channel::Radiance, Channel::BlockVariance, Channel::FirstHalf}), "");
+    EXPECT_NE(reason({Channel::Radiance, Channel::HalfBufferA}).find("request first_half"),
+              std::string::npos);
+    EXPECT_NE(reason({Channel::Color, Channel::BlockVariance}).find("need radiance"), std::string::npos);
+}
+
 // Film that would corrupt the frame does not decode.
 TEST(MalformedBytes, InvalidFilmIsRefused) {
     const auto refused = [](const std::function<void(FilmPart&)>& forge) {
