@@ -28,7 +28,7 @@ namespace tessera::filter {
 //
 // Pixels with n < 2 have no known variance: they do not contribute to the sums, and w = 1 there.
 //
-// Samples that are stratified have a smaller error than V_U says: of soft direct light a tenth and less. So
+// V_U is that of stratified samples (frame/design_effect.h), which is still too large in places. So
 // the numerator is bounded by an estimate from F - U itself: neighbours have independent noise but much the
 // same bias, hence half of E(D_p - D_q)^2 of adjacent p, q is the variance of U without the bias. Where bias
 // changes its sign from pixel to pixel it counts as noise, and V_U alone decides.

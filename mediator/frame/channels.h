@@ -99,7 +99,8 @@ inline constexpr auto ChannelTable = std::to_array<ChannelInfo>({
      "radiance of the pixel without second moments, for pictures without statistics: half of radiance's "
      "planes"},
     {Channel::BlockVariance, "block_variance", MergeRule::BlockVariance, 2,
-     "error of the mean by the halves of blocks of samples: of the luminance, and of the halves themselves"},
+     "variance of the mean, by the difference between the two halves of the samples, and the same of the "
+     "halves"},
     {Channel::FirstHalf, "first_half", MergeRule::FirstHalf, 4,
      "mean radiance of the first half of the samples, and their count"},
 });

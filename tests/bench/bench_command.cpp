@@ -15,7 +15,7 @@ namespace tessera::tools::bench {
 Command bench_command(cli::CommandLine& program) {
     cli::CommandLine& line = program.command(
         "bench",
-        "Benchmarks: error and time of denoisers, truth of variances, back-ends, edits and displays.");
+        "Benchmarks: error and time of denoisers, accuracy of variances, back-ends, edits and displays.");
     const std::vector<Command> commands{backends_command(line), displays_command(line),
                                         filters_command(line),  live_command(line),
                                         pictures_command(line), variance_command(line)};

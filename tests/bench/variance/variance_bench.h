@@ -14,8 +14,7 @@
 
 namespace tessera::tools::bench {
 
-// How true the film's variances of means are: the estimates of single films against the variance of the means of films
-// with different seeds.
+// Compares the film's estimates of the variance of the mean with the true one, from films with different seeds.
 struct VariancePlan {
     std::filesystem::path assets;
     std::vector<std::string> scenes;

@@ -25,26 +25,24 @@ struct VarianceOptions {
     bool json = false;
 };
 
-tl::unexpected<Error> wrong_option(const std::string& text) {
-    return failure(ErrorCode::InvalidInput, text);
-}
-
 Expected<VariancePlan> parse_options(const VarianceOptions& options) {
     VariancePlan plan{.assets = options.assets,
                       .seeds = options.seeds,
                       .jobs = options.jobs != 0 ? options.jobs : core_count()};
     auto scenes = choose_scenes(options.scenes, plan.assets);
-    if (!scenes) return wrong_option(std::string("--scenes: ") + scenes.error().what());
+    if (!scenes) return failure(ErrorCode::InvalidInput, std::string("--scenes: ") + scenes.error().what());
     plan.scenes = std::move(*scenes);
     auto spp = parse_spp(options.spp);
     if (!spp) return tl::unexpected(spp.error());
     plan.spp = std::move(*spp);
     const auto size = parse_size(options.size);
-    if (!size) return wrong_option(std::string("--size: ") + size.error().what());
+    if (!size) return failure(ErrorCode::InvalidInput, std::string("--size: ") + size.error().what());
     plan.size = *size;
     if (plan.size.width < 16 || plan.size.height < 16)
-        return wrong_option("--size: errors are compared in blocks of 16x16 pixels: at least one");
-    if (plan.seeds < 4) return wrong_option("--seeds: fewer than 4 say nothing about a variance");
+        return failure(ErrorCode::InvalidInput,
+                       "--size: errors are compared in blocks of 16x16 pixels: at least one");
+    if (plan.seeds < 4)
+        return failure(ErrorCode::InvalidInput, "--seeds: fewer than 4 say nothing about a variance");
     return plan;
 }
 
@@ -113,11 +111,14 @@ Command variance_command(cli::CommandLine& bench) {
     const auto options = std::make_shared<VarianceOptions>();
     cli::CommandLine& line = bench.command(
         "variance",
-        "How true the film's variances are: those of the means of single films, over those of films with "
-        "different seeds, in blocks of 16x16 pixels and for the whole picture; 1 is exact. Blocks with a "
-        "relative error below 0.3 % do not count. 'common' are blocks where 5x5 pixels expect at least three "
-        "of the samples that cause the variance. 'independent' is the whole picture's as if samples were not "
-        "stratified.");
+        "Accuracy of the film's variances: the estimates of single films, divided by the true variance of "
+        "the "
+        "mean, which films with different seeds give. In blocks of 16x16 pixels and for the whole picture; 1 "
+        "is "
+        "exact. Blocks with a relative error below 0.3 % do not count. 'common' are blocks where 5x5 pixels "
+        "expect at least three of the samples that cause the variance. 'independent' is the whole picture's "
+        "as "
+        "if samples were not stratified.");
     line.option("--scenes", "a,b: built-in scenes or scene files (default: all)", options->scenes);
     line.option("--spp", "samples per pixel to measure at", options->spp);
     line.option("--size", "picture size", options->size);

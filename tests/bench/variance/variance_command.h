@@ -4,7 +4,7 @@
 
 namespace tessera::tools::bench {
 
-// tessera bench variance: how true the film's variances of means are.
+// tessera bench variance: accuracy of the film's variances of means.
 Command variance_command(cli::CommandLine& bench);
 
 }  // namespace tessera::tools::bench
