@@ -14,10 +14,10 @@ constexpr std::size_t Radius = 4, Rows = 2 * Radius + 1;
 // variance of the first of these.
 enum Term : std::size_t { Top, Below, Independent, Uncertainty, TermCount };
 
-// One row, term after term; 0 where nothing is known.
-void fill_row(const FilmTile& film, std::size_t y, std::span<double> row) {
+// One row, term after term, each with Radius zeros on either side; 0 where nothing is known.
+void fill_row(const FilmTile& film, std::size_t y, std::size_t width, std::span<double> row) {
     constexpr std::array Weights{0.2126, 0.7152, 0.0722};  // as in merge.cpp
-    const std::size_t width = row.size() / TermCount;
+    const std::size_t padded = width + 2 * Radius;
     const std::uint32_t own = film.channels.first_plane(Channel::BlockVariance);
     const std::uint32_t m2 = film.channels.first_plane(Channel::Radiance) + 3;
     std::ranges::fill(row, 0.0);
@@ -29,23 +29,21 @@ void fill_row(const FilmTile& film, std::size_t y, std::span<double> row) {
         for (std::uint32_t c = 0; c < 3; ++c)
             variance += Weights[c] * double(film.plane(m2 + c)[i]) / (n * (n - 1.0));
         if (!std::isfinite(variance) || !std::isfinite(top) || !std::isfinite(below)) continue;
-        row[Top * width + x] = top;
-        row[Below * width + x] = below;
-        row[Independent * width + x] = variance;
+        double* terms = &row[Radius + x];
+        terms[Top * padded] = top;
+        terms[Below * padded] = below;
+        terms[Independent * padded] = variance;
         // Of a squared difference of mean e that is normally distributed, the square has mean 3 e^2 and the variance is
         // 2 e^2. Of n - 1 such differences `variance` is the mean, and this is one of them.
-        row[Uncertainty * width + x] = 2.0 / 3.0 * top * top * (n - 2.0) / (n - 1.0);
+        terms[Uncertainty * padded] = 2.0 / 3.0 * top * top * (n - 2.0) / (n - 1.0);
     }
 }
 
-// Sums over 2 Radius + 1 neighbours, fewer at the border.
-void pool_row(std::span<const double> from, std::span<double> to) {
-    const std::size_t width = from.size();
-    for (std::size_t x = 0; x < width; ++x) {
-        const std::size_t end = std::min(width, x + Radius + 1);
-        double sum = 0.0;
-        for (std::size_t k = x < Radius ? 0 : x - Radius; k < end; ++k) sum += from[k];
-        to[x] = sum;
+// Sums over 2 Radius + 1 neighbours.
+void pool_row(std::span<const double> padded, std::span<double> to) {
+    std::ranges::fill(to, 0.0);
+    for (std::size_t k = 0; k < Rows; ++k) {
+        for (std::size_t x = 0; x < to.size(); ++x) to[x] += padded[x + k];
     }
 }
 
@@ -73,17 +71,17 @@ std::span<const float> DesignEffect::measure(const FilmTile& film) {
     if (!is_known || std::ranges::all_of(film.counts, is_single)) return effects_;
     const auto width = static_cast<std::size_t>(film.rect.width);
     const auto height = static_cast<std::size_t>(film.rect.height);
-    const std::size_t row_size = TermCount * width;
-    // The last rows, pooled along x, one after another in a ring; one row; its sum over the rows.
-    scratch_.resize((Rows + 2) * row_size);
+    const std::size_t row_size = TermCount * width, padded = width + 2 * Radius;
+    // The last rows, pooled along x, one after another in a ring; their sum; one row.
+    scratch_.resize((Rows + 1) * row_size + TermCount * padded);
     const std::span<double> all(scratch_);
-    const std::span<double> row = all.subspan(Rows * row_size, row_size);
-    const std::span<double> sums = all.subspan((Rows + 1) * row_size, row_size);
+    const std::span<double> sums = all.subspan(Rows * row_size, row_size);
+    const std::span<double> row = all.subspan((Rows + 1) * row_size);
     for (std::size_t last = 0; last < height + Radius; ++last) {
         if (last < height) {
-            fill_row(film, last, row);
+            fill_row(film, last, width, row);
             for (std::size_t term = 0; term < TermCount; ++term)
-                pool_row(row.subspan(term * width, width),
+                pool_row(row.subspan(term * padded, padded),
                          all.subspan((last % Rows) * row_size + term * width, width));
         }
         if (last < Radius) continue;
