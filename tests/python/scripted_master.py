@@ -19,6 +19,7 @@ class Member:
     def __init__(self, number, token):
         self.number, self.token = number, token
         self.control = self.bulk = None
+        self.waiting = []  # bulk messages, until the member's bulk link has joined
         self.name, self.key = b"", 0
         self.frame, self.taken = {}, {}
 
@@ -266,7 +267,7 @@ class ScriptedMaster:
             return then()
         for name in missing:
             self.wanted[name] = [bytearray(), member, refs, then]
-            self.say_raw(1, member.bulk, bulk.encode(bulk.BlobRequest(name, 0)))
+            self._send_bulk(member, bulk.BlobRequest(name, 0))
         return None
 
     def _on_lock_objects(self, member, lock):
@@ -390,6 +391,13 @@ class ScriptedMaster:
                     x, 0, w, height, request.view.channels, samples.to_bytes(4, "little") * (w * height),
                     bytes(4 * w * height * planes))))
         for message in messages:
+            self._send_bulk(member, message)
+
+    def _send_bulk(self, member, message):
+        """The two links join in either order: on a busy machine a request comes before the bulk link."""
+        if member.bulk is None:
+            member.waiting.append(message)
+        else:
             self.say_raw(1, member.bulk, bulk.encode(message))
 
     def _bulk(self, peer, data):
@@ -398,6 +406,8 @@ class ScriptedMaster:
             for member in self.members.values():
                 if member.token == message.token:
                     member.bulk = peer
+                    while member.waiting:
+                        self._send_bulk(member, member.waiting.pop(0))
         elif isinstance(message, bulk.BlobRequest):
                 self.say_raw(1, peer, bulk.encode(blobs.answer(message, self.blobs.get(message.hash))))
         elif isinstance(message, bulk.BlobChunk):
