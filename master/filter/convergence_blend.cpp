@@ -3,79 +3,117 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
+#include "master/filter/box_sums.h"
 #include "master/filter/kernels.h"
 
 namespace tessera::filter {
 
 namespace {
 
-// The differences of the three components come first.
-enum Term : std::uint32_t { Difference, Gain = 3, Distance, Spread, Amplitude, TermCount };
+// Relative deviations and differences, so that sums of squares stay finite.
+constexpr float Most = 1e15f, Largest = 1e37f;
 
-constexpr float Most = 1e15f;  // deviations, so that sums of squares stay finite
+constexpr std::size_t Bands = ConvergenceBlend::Bands;
 
-// The terms of one row; 0 where the variance is unknown, so that those pixels do not contribute.
-void fill_terms(const Inputs& inputs, frame::Channel filtered_part, const Planes& filtered,
-                std::span<const float> self_weight, float floor, std::uint32_t y, Planes& terms) {
+// Per pixel, relative and summed over r, g, b: the variance of U - F, its square and its root, and the squares of the
+// bands.
+enum Term : std::uint32_t { Noise, NoiseSquare, Amplitude, Square, TermCount = Square + Bands };
+constexpr std::array<std::uint32_t, 2> ForUnseen{Noise, Amplitude};
+constexpr std::array<std::uint32_t, 2 + Bands> ForWeights{Noise, NoiseSquare, Square, Square + 1, Square + 2};
+
+// The variance of each band where every pixel has independent noise of variance 1, from the sums of squares and of
+// products of the kernels.
+constexpr double squared(double x) {
+    return x * x;
+}
+constexpr double Own = squared(2.0 / 4.0), Narrow = squared(6.0 / 16.0), Both = squared(14.0 / 64.0),
+                 Wide = squared(44.0 / 256.0);
+constexpr std::array<float, Bands> NoiseGain{static_cast<float>(1.0 - 2.0 * Own + Narrow),
+                                             static_cast<float>(Narrow - 2.0 * Both + Wide),
+                                             static_cast<float>(Wide)};
+
+// What differences are divided by: light by its own brightness, alpha by that of the light, whose weights it has.
+struct Scale {
+    Scale(const Planes& filtered, std::uint32_t component, std::uint32_t y, float floor) : floor_(floor) {
+        for (std::uint32_t c = 0; c < 3; ++c) light_[c] = filtered.row(component < 3 ? component : c, y);
+    }
+    float at(std::size_t x) const {
+        constexpr float Third = 1.0f / 3.0f;
+        const float mean =
+            Third * std::abs(light_[0][x]) + Third * std::abs(light_[1][x]) + Third * std::abs(light_[2][x]);
+        return std::min(mean + floor_, 3e38f);
+    }
+
+  private:
+    std::array<const float*, 3> light_;
+    float floor_;
+};
+
+// U - F of one row, 0 where the variance is unknown, the same relative to F, and its relative variance.
+void fill_residual(const Inputs& inputs, frame::Channel filtered_part, const Planes& filtered,
+                   std::span<const float> self_weight, float floor, std::uint32_t y, Planes& residual,
+                   Planes& relative, Planes& terms) {
     const std::uint32_t width = inputs.width;
-    float *gain = terms.row(Gain, y), *distance = terms.row(Distance, y);
-    std::fill(gain, gain + width, 0.0f);
-    std::fill(distance, distance + width, 0.0f);
     const float* counts = inputs.counts.row(0, y);
-    const Planes& mean = inputs.mean(frame::Channel::Radiance);
-    const Planes& variance = inputs.variance(filtered_part);
-    for (std::uint32_t c = 0; c < mean.components(); ++c) {
-        const float* u = mean.row(c, y);
-        const float* v = variance.row(c, y);
+    for (std::uint32_t c = 0; c < filtered.components(); ++c) {
+        const float* u = inputs.color(c).data() + std::size_t{y} * width;
         const float* f = filtered.row(c, y);
-        float* difference = terms.row(Difference + c, y);
+        const Scale scale(filtered, c, y, floor);
+        float *to = residual.row(c, y), *relative_to = relative.row(c, y);
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const float difference = counts[x] >= 2.0f ? std::clamp(u[x] - f[x], -Largest, Largest) : 0.0f;
+            to[x] = difference;
+            relative_to[x] = std::clamp(difference / scale.at(x), -Most, Most);
+        }
+    }
+    float* noise = terms.row(Noise, y);
+    std::fill(noise, noise + width, 0.0f);
+    for (std::uint32_t c = 0; c < 3; ++c) {
+        const float* v = inputs.variance(filtered_part).row(c, y);
+        const float* f = filtered.row(c, y);
         for (std::uint32_t x = 0; x < width; ++x) {
             const float known = counts[x] >= 2.0f ? 1.0f : 0.0f;
-            const float scale = known / (std::abs(f[x]) + floor);
-            const float d = std::clamp((f[x] - u[x]) * scale, -Most, Most);
-            difference[x] = d;
-            const float deviation = std::min(std::sqrt(v[x]) * scale, Most);
-            gain[x] += deviation * deviation;
-            distance[x] += d * d;
+            const float deviation = std::min(std::sqrt(v[x]) * (known / (std::abs(f[x]) + floor)), Most);
+            noise[x] += deviation * deviation;
         }
     }
     if (!self_weight.empty()) {
         const float* a = self_weight.data() + std::size_t{y} * width;
-        for (std::uint32_t x = 0; x < width; ++x) gain[x] *= 1.0f - a[x];
+        for (std::uint32_t x = 0; x < width; ++x) noise[x] *= 1.0f - a[x];
     }
-    float* amplitude = terms.row(Amplitude, y);
-    for (std::uint32_t x = 0; x < width; ++x) amplitude[x] = std::sqrt(gain[x]);
+    float *square = terms.row(NoiseSquare, y), *amplitude = terms.row(Amplitude, y);
+    for (std::uint32_t x = 0; x < width; ++x) {
+        square[x] = noise[x] * noise[x];
+        amplitude[x] = std::sqrt(noise[x]);
+    }
 }
 
-// Half of the squared difference to the right and lower neighbours. At the border, and where the neighbour's
-// variance is unknown, the pixel's own square is used instead.
-void fill_spread(const Planes& counts, std::span<const float> self_weight, std::uint32_t y, Planes& terms) {
-    const std::uint32_t width = terms.width();
-    const bool last_row = y + 1 == terms.height();
-    float* spread = terms.row(Spread, y);
-    std::fill(spread, spread + width, 0.0f);
-    for (std::uint32_t c = 0; c < 3; ++c) {
-        const float* here = terms.row(Difference + c, y);
-        const float* below = last_row ? here : terms.row(Difference + c, y + 1);
-        const float* n = counts.row(0, y);
-        const float* n_below = last_row ? n : counts.row(0, y + 1);
-        for (std::uint32_t x = 0; x < width; ++x) {
-            const float own = here[x] * here[x];
-            const float down = here[x] - below[x];
-            const bool has_down = !last_row && n_below[x] >= 2.0f;
-            spread[x] += 0.5f * (n[x] < 2.0f ? 0.0f : has_down ? 0.5f * down * down : own);
-        }
-        for (std::uint32_t x = 0; x < width; ++x) {
-            const bool has_right = x + 1 < width && n[x + 1] >= 2.0f;
-            const float across = has_right ? here[x] - here[x + 1] : 0.0f;
-            spread[x] += 0.5f * (n[x] < 2.0f ? 0.0f : has_right ? 0.5f * across * across : here[x] * here[x]);
-        }
+// The two kernels, in both directions, up to their middle; beyond the border the last pixel goes on.
+constexpr std::array<float, 2> NarrowKernel{0.25f, 0.5f};
+constexpr std::array<float, 4> WideKernel{0.0625f, 0.125f, 0.1875f, 0.25f};
+
+// `column`: scratch, width + 6.
+template <std::size_t Size>
+void smooth_row(const Planes& from, std::uint32_t c, std::uint32_t y, const std::array<float, Size>& kernel,
+                float* __restrict column, float* __restrict to) {
+    constexpr std::uint32_t Radius = Size - 1;
+    const std::uint32_t width = from.width(), last = from.height() - 1;
+    float* __restrict sum = column + Radius;
+    const float* here = from.row(c, y);
+    for (std::uint32_t x = 0; x < width; ++x) sum[x] = kernel[Radius] * here[x];
+    for (std::uint32_t d = 1; d <= Radius; ++d) {
+        const float *above = from.row(c, y > d ? y - d : 0), *below = from.row(c, std::min(last, y + d));
+        for (std::uint32_t x = 0; x < width; ++x) sum[x] += kernel[Radius - d] * (above[x] + below[x]);
     }
-    if (self_weight.empty()) return;
-    // The noise of F - U is that of U times 1 - a, and the numerator has V (1 - a), not V (1 - a)^2.
-    const float* a = self_weight.data() + std::size_t{y} * width;
-    for (std::uint32_t x = 0; x < width; ++x) spread[x] /= std::max(1.0f - a[x], 1e-3f);
+    std::fill(column, sum, sum[0]);
+    std::fill(sum + width, sum + width + Radius, sum[width - 1]);
+    for (std::uint32_t x = 0; x < width; ++x) to[x] = kernel[Radius] * sum[x];
+    for (std::uint32_t d = 1; d <= Radius; ++d) {
+        const float *left = column + Radius - d, *right = column + Radius + d;
+        for (std::uint32_t x = 0; x < width; ++x) to[x] += kernel[Radius - d] * (left[x] + right[x]);
+    }
 }
 
 // A tenth of the mean absolute value, which is the floor of relMSE's denominator too.
@@ -95,91 +133,141 @@ float floor_of(const Planes& filtered, std::vector<double>& rows, RunContext& co
     return std::max(0.1f * static_cast<float>(mean), 1e-30f);
 }
 
-// Sums over the squares of one row, `width` numbers each; column sums have ConvergenceBlend::MaxRadius zeroed
-// pixels on either side.
-enum Sum : std::size_t { Gains, Distances, Spreads, Amplitudes, SumCount };
-constexpr std::array<Term, SumCount> SummedTerms{Gain, Distance, Spread, Amplitude};
+// Of the mean variance around it: a pixel with less has seen next to nothing of what causes that variance.
+constexpr float UnseenShare = 0.02f;
+constexpr float LeastDarker = 1e-3f;  // of the brightness of U to that of F
+constexpr float RareArea = 25.0f;     // pixels that see at most one find where light is rare
 
-// Sums of the terms over the squares around the pixels of row y, clipped to the picture.
-void sum_squares(const Planes& terms, std::uint32_t y, std::uint32_t radius, float* columns, float* sums) {
-    const std::size_t width = terms.width();
-    const std::uint32_t first = y > radius ? y - radius : 0;
-    const std::uint32_t last = std::min(terms.height() - 1, y + radius);
-    for (std::size_t k = 0; k < SumCount; ++k) {
-        float* __restrict column = columns + ConvergenceBlend::MaxRadius;
-        std::fill_n(columns, width + 2 * ConvergenceBlend::MaxRadius, 0.0f);
-        for (std::uint32_t row = first; row <= last; ++row) {
-            const float* values = terms.row(SummedTerms[k], row);
-            for (std::size_t x = 0; x < width; ++x) column[x] += values[x];
-        }
-        float* __restrict sum = sums + k * width;
-        std::fill_n(sum, width, 0.0f);
-        const float* from = columns + (ConvergenceBlend::MaxRadius - radius);
-        for (std::uint32_t dx = 0; dx <= 2 * radius; ++dx) {
-            for (std::size_t x = 0; x < width; ++x) sum[x] += from[x + dx];
-        }
+// Of the pixels of one row that have seen next to nothing of the light that makes the noise around them: the
+// probability that it is rare. 0 elsewhere.
+void find_unseen(const float* own, const float* noise, const float* amplitude, std::size_t width, float area,
+                 float* __restrict unseen) {
+    for (std::size_t x = 0; x < width; ++x) {
+        const float seen = amplitude[x] * amplitude[x] / std::max(noise[x], 1e-37f);
+        const float expected = seen * (RareArea / area);
+        const float rare = exp_negative(-expected) * (1.0f + expected);
+        unseen[x] = own[x] * area < UnseenShare * noise[x] ? rare : 0.0f;
     }
 }
 
-// margin x gain / distance, at most 1.
-void divide(const float* sums, std::size_t width, float margin, float* __restrict weight) {
-    const float *gain = sums + Gains * width, *distance = sums + Distances * width,
-                *spread = sums + Spreads * width;
+// The bands of one row and component.
+struct BandRow {
+    const float *relative, *narrow, *wide;
+    Scale scale;
+
+    std::array<float, Bands> at(std::size_t x) const {
+        const float s = scale.at(x);
+        const float coarser = std::clamp(narrow[x] * s, -Largest, Largest);
+        return {std::clamp((relative[x] - narrow[x]) * s, -Largest, Largest), coarser - wide[x], wide[x]};
+    }
+};
+
+BandRow bands_of(const Planes& relative, const Planes& narrow, const Planes& wide, const Planes& filtered,
+                 float floor, std::uint32_t c, std::uint32_t y) {
+    return {relative.row(c, y), narrow.row(c, y), wide.row(c, y), Scale(filtered, c, y, floor)};
+}
+
+// The relative squares of the bands in one row.
+void fill_squares(const BandRow& row, const float* unseen, std::uint32_t y, Planes& terms) {
+    const std::uint32_t width = terms.width();
+    float *fine = terms.row(Square, y), *middle = terms.row(Square + 1, y),
+          *coarse = terms.row(Square + 2, y);
+    for (std::uint32_t x = 0; x < width; ++x) {
+        // U + floor is (F + floor) (1 + residual).
+        const float darker = std::max(1.0f + row.relative[x], LeastDarker);
+        const float raised = row.relative[x] < 0.0f ? 1.0f / darker : 1.0f;
+        const float factor = 1.0f + unseen[x] * (raised * raised - 1.0f);
+        const float inverse = 1.0f / row.scale.at(x);
+        const std::array<float, Bands> bands = row.at(x);
+        const auto square = [&](float d) {
+            const float relative = std::clamp(d * inverse, -Most, Most);
+            return relative * relative * factor;
+        };
+        fine[x] += square(bands[0]);
+        middle[x] += square(bands[1]);
+        coarse[x] += square(bands[2]);
+    }
+}
+
+// w of one band.
+void divide(const float* noise, const float* uncertainty, const float* square, std::size_t width, float gain,
+            float* __restrict weight) {
     for (std::size_t x = 0; x < width; ++x) {
-        const float known = margin * std::min(gain[x], spread[x]);
-        const float part = known / std::max(distance[x], 1e-37f);
-        weight[x] = known >= distance[x] ? 1.0f : part;
+        const float variance = gain * noise[x];
+        const float deviation = gain * std::sqrt(2.0f * uncertainty[x]);
+        const float bias = std::max(0.0f, square[x] - variance - deviation);
+        const float w = variance / std::max(variance + bias, 1e-37f);
+        weight[x] = bias > 0.0f ? w : 1.0f;
     }
 }
 
 }  // namespace
 
 bool ConvergenceBlend::weigh(const Inputs& inputs, frame::Channel filtered_part,
-                             std::span<const float> self_weight, const Planes& filtered,
+                             std::span<const float> self_weight, const Planes& filtered, float floor,
                              RunContext& context) {
     shape(terms_, inputs, TermCount);
-    shape(weights_, inputs, 1);
+    shape(weights_, inputs, Bands);
+    for (Planes* planes : {&residual_, &wide_, &relative_, &narrow_})
+        shape(*planes, inputs, filtered.components());
     const std::size_t width = inputs.width;
-    scratch_.reserve(context, (SumCount + 2) * width + 2 * MaxRadius);
-    const float floor = floor_of(filtered, row_sums_, context);
-    const float side = 2.0f * static_cast<float>(radius_) + 1.0f;
-    const float area_ratio = 9.0f / (side * side);  // of the 3 x 3 square to the large one
+    scratch_.reserve(context, BoxSums::size(width, radius_, ForWeights.size()) + 2 * width + 6);
+    const std::uint32_t blocks = BoxSums::block_count(inputs.height, radius_);
     return for_rows(context, inputs.height,
                     [&](std::uint32_t y) {
-                        fill_terms(inputs, filtered_part, filtered, self_weight, floor, y, terms_);
+                        fill_residual(inputs, filtered_part, filtered, self_weight, floor, y, residual_,
+                                      relative_, terms_);
                     }) &&
-           for_rows(context, inputs.height,
-                    [&](std::uint32_t y) { fill_spread(inputs.counts, self_weight, y, terms_); }) &&
-           for_rows(context, inputs.height, [&](std::uint32_t y) {
-               float* sums = scratch_.local();
-               float *near = sums + SumCount * width, *columns = near + width;
-               const float* counts = inputs.counts.row(0, y);
-               float* weight = weights_.row(0, y);
-               sum_squares(terms_, y, 1, columns, sums);
-               divide(sums, width, Margin, near);
-               sum_squares(terms_, y, radius_, columns, sums);
-               divide(sums, width, 1.0f, weight);
-               const float *amplitudes = sums + Amplitudes * width, *gains = sums + Gains * width;
-               for (std::size_t x = 0; x < width; ++x) {
-                   const float seen = amplitudes[x] * amplitudes[x] / std::max(gains[x], 1e-37f);
-                   const float expected = area_ratio * seen;
-                   const float blind = exp_negative(-expected) * (1.0f + expected * (1.0f + 0.5f * expected));
-                   const float least = std::min(weight[x], near[x]);
-                   const float w = least + blind * (weight[x] - least);
-                   weight[x] = counts[x] < 2.0f ? 1.0f : w;
+           for_rows(context, blocks, [&](std::uint32_t block) { fill_bands(filtered, floor, block); }) &&
+           for_rows(context, blocks, [&](std::uint32_t block) {
+               const BoxSums sums(terms_, ForWeights, block, radius_, scratch_.local());
+               for (std::uint32_t i = 0; i < sums.row_count(); ++i) {
+                   for (std::uint32_t band = 0; band < Bands; ++band) {
+                       divide(sums.row(0, i), sums.row(1, i), sums.row(2 + band, i), width, NoiseGain[band],
+                              weights_.row(band, sums.first_row() + i));
+                   }
                }
            });
 }
 
+void ConvergenceBlend::fill_bands(const Planes& filtered, float floor, std::uint32_t block) {
+    const std::size_t width = filtered.width();
+    const BoxSums sums(terms_, ForUnseen, block, radius_, scratch_.local());
+    float* unseen = scratch_.local() + BoxSums::size(width, radius_, ForUnseen.size());
+    const auto rows = static_cast<float>(BoxSums::rows_of(radius_));
+    for (std::uint32_t i = 0; i < sums.row_count(); ++i) {
+        const std::uint32_t y = sums.first_row() + i;
+        find_unseen(terms_.row(Noise, y), sums.row(0, i), sums.row(1, i), width, rows * rows, unseen);
+        for (std::uint32_t band = 0; band < Bands; ++band)
+            std::fill_n(terms_.row(Square + band, y), width, 0.0f);
+        for (std::uint32_t c = 0; c < filtered.components(); ++c) {
+            smooth_row(relative_, c, y, NarrowKernel, unseen + width, narrow_.row(c, y));
+            smooth_row(residual_, c, y, WideKernel, unseen + width, wide_.row(c, y));
+            if (c < 3)
+                fill_squares(bands_of(relative_, narrow_, wide_, filtered, floor, c, y), unseen, y, terms_);
+        }
+    }
+}
+
 bool ConvergenceBlend::apply(const Inputs& inputs, frame::Channel filtered_part,
                              std::span<const float> self_weight, Planes& picture, RunContext& context) {
-    if (!weigh(inputs, filtered_part, self_weight, picture, context)) return false;
+    const float floor = floor_of(picture, row_sums_, context);
+    if (!weigh(inputs, filtered_part, self_weight, picture, floor, context)) return false;
     return for_rows(context, inputs.height, [&](std::uint32_t y) {
-        const float* w = weights_.row(0, y);
-        for (std::uint32_t c = 0; c < picture.components(); ++c) {
-            const float* u = inputs.color(c).data() + std::size_t{y} * inputs.width;
+        const float *fine = weights_.row(0, y), *middle = weights_.row(1, y), *coarse = weights_.row(2, y);
+        const float* counts = inputs.counts.row(0, y);
+        // Alpha, which is scaled by the light, first.
+        for (std::uint32_t c = picture.components(); c-- > 0;) {
+            const BandRow row = bands_of(relative_, narrow_, wide_, picture, floor, c, y);
             float* f = picture.row(c, y);
-            for (std::uint32_t x = 0; x < inputs.width; ++x) f[x] = u[x] + w[x] * (f[x] - u[x]);
+            const float most = c == 3 ? 1.0f : std::numeric_limits<float>::max();
+            for (std::uint32_t x = 0; x < inputs.width; ++x) {
+                const std::array<float, Bands> d = row.at(x);
+                const float change =
+                    (1.0f - fine[x]) * d[0] + (1.0f - middle[x]) * d[1] + (1.0f - coarse[x]) * d[2];
+                // What lies in a range is never further from its nearest value than from one outside.
+                f[x] = counts[x] >= 2.0f ? std::clamp(f[x] + change, 0.0f, most) : f[x];
+            }
         }
     });
 }

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "master/filter/nfor/regression.h"
+#include "master/filter/nfor/selection.h"
 #include "mediator/base/random.h"
 #include "tests/filter/synthetic.h"
 
@@ -184,6 +186,58 @@ TEST(Nfor, KeepsAnEdgeThatNoFeatureShows) {
         EXPECT_NEAR(out.picture.row(0, y)[23], 1.0f, 0.1f);
         EXPECT_NEAR(out.picture.row(0, y)[24], 2.0f, 0.2f);
     }
+}
+
+TEST(Nfor, TheExposureDoesNotMatter) {
+    const auto lit = [](float exposure) {
+        return synthetic_inputs(48, 32, 8, [exposure](auto x, auto y, auto i) {
+            SyntheticSample s = curved_surface(x, y, i, 1.0);
+            for (float& light : s.high) light *= exposure;
+            return s;
+        });
+    };
+    const Planes once = run_filter("nfor", lit(1.0f)).picture;
+    for (const float exposure : {1.0f / 1024.0f, 1024.0f}) {
+        const Planes picture = run_filter("nfor", lit(exposure)).picture;
+        for (std::size_t i = 0; i < 3 * once.pixel_count(); ++i)
+            ASSERT_NEAR(picture.values()[i], exposure * once.values()[i], 1e-3f * exposure)
+                << exposure << " " << i;
+    }
+}
+
+// The result is the mean of two halves: noise of variance 1 in each is an error of 1/2, less than a bias of 0.8^2.
+TEST(NforSelection, ComparesErrorsOfTheMeanOfBothHalves) {
+    constexpr std::uint32_t Size = 32;
+    Inputs inputs;
+    inputs.width = inputs.height = Size;
+    inputs.counts = Planes(Size, Size, 1);
+    std::ranges::fill(inputs.counts.values(), 16.0f);
+    std::mt19937 random(5);
+    std::normal_distribution<float> noise;
+    std::array<Planes, 2> colors;
+    Planes variance(Size, Size, 3), counts(Size, Size, 1);
+    std::ranges::fill(variance.values(), 4.0f);
+    std::ranges::fill(counts.values(), 8.0f);
+    std::array<std::array<Planes, 2>, 2> filtered;
+    for (std::size_t h = 0; h < 2; ++h) {
+        colors[h] = filtered[h][0] = filtered[h][1] = Planes(Size, Size, 4);
+        for (std::size_t i = 0; i < 3 * std::size_t{Size} * Size; ++i) {
+            colors[h].values()[i] = 10.0f + 2.0f * noise(random);
+            filtered[h][0].values()[i] = 10.0f + noise(random);
+            filtered[h][1].values()[i] = 10.8f;
+        }
+    }
+    const auto half = [&](std::size_t h) {
+        const Planes& c = colors[h];
+        return nfor::Half{{c.plane(0), c.plane(1), c.plane(2), c.plane(3)}, c, variance, counts};
+    };
+    tbb::task_arena arena(2);
+    RunContext context{arena, {}};
+    nfor::Selection selection;
+    ASSERT_TRUE(selection.run(inputs, {half(0), half(1)}, filtered, context));
+    double narrow = 0.0;
+    for (const float v : selection.first().values()) narrow += v / double(Size * Size);
+    EXPECT_GT(narrow, 0.6);
 }
 
 }  // namespace

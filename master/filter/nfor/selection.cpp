@@ -1,6 +1,7 @@
 #include "master/filter/nfor/selection.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tessera::filter::nfor {
 
@@ -8,8 +9,14 @@ namespace {
 
 constexpr PatchSettings Patches{.radius = 5, .patch = 3};
 constexpr float Largest = 1e30f;
-// Relative to the squared picture, as in relMSE.
-constexpr float RelativeFloor = 0.01f;
+// A hundredth of the squared mean of the picture, the floor of relMSE's denominator.
+float floor_of(const std::array<std::array<Planes, 2>, 2>& filtered) {
+    const std::span<const float> values = filtered[0][1].values().first(3 * filtered[0][1].pixel_count());
+    double sum = 0.0;
+    for (const float v : values) sum += std::abs(v);
+    const double mean = sum / static_cast<double>(values.size());
+    return std::clamp(static_cast<float>(0.01 * mean * mean), 1e-30f, Largest);
+}
 
 }  // namespace
 
@@ -20,6 +27,7 @@ bool Selection::run(const Inputs& inputs, const std::array<Half, 2>& halves,
     shape(advantage_, inputs, 1);
     shape(chosen_, inputs, 1);
     const std::uint32_t width = inputs.width;
+    const float floor = floor_of(filtered);
     const bool gathered = for_rows(context, inputs.height, [&](std::uint32_t y) {
         float* advantage = advantage_.row(0, y);
         std::fill(advantage, advantage + width, 0.0f);
@@ -34,13 +42,17 @@ bool Selection::run(const Inputs& inputs, const std::array<Half, 2>& halves,
                 const float mean = 0.5f * (wide[0][x] + wide[1][x]), between = wide[0][x] - wide[1][x];
                 guide[x] = mean;
                 variance[x] = std::min(0.25f * between * between, Largest);
-                const float relative = 1.0f / (std::min(mean * mean, Largest) + RelativeFloor);
+                const float relative = 1.0f / (std::min(mean * mean, Largest) + floor);
                 for (int h = 0; h < 2; ++h) {
                     // (narrow - noisy)^2 - (wide - noisy)^2, with less rounding
                     const float worse = (narrow[h][x] - wide[h][x]) *
                                         (narrow[h][x] + wide[h][x] - 2.0f * noisy[1 - h][x]) * relative;
                     advantage[x] -= std::clamp(worse, -Largest, Largest);
                 }
+                // The mean of the halves has half the variance of one.
+                const float spread = narrow[0][x] - narrow[1][x];
+                const float noisier = 0.5f * (spread - between) * (spread + between) * relative;
+                advantage[x] += std::clamp(noisier, -Largest, Largest);
             }
         }
     });
