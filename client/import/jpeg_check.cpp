@@ -1,6 +1,7 @@
 #include "client/import/jpeg_check.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ struct JpegFrame {
     std::uint64_t least_bits = 0;
     std::uint64_t scans = 0;
     std::uint64_t most_codes = 0;  // of a Huffman table
+    bool is_progressive = false;
+    std::array<std::array<bool, 4>, 2> has_table{};  // DC and AC, by number
+    bool lacks_table = false;                        // a scan needs one that no segment before it has
 };
 
 bool starts_frame(unsigned char marker) {
@@ -41,6 +45,7 @@ void read_frame(std::span<const unsigned char> segment, unsigned char marker, Jp
     if (segment.size() < 6) return;
     frame.height = segment[1] * 256u + segment[2];
     frame.width = segment[3] * 256u + segment[4];
+    frame.is_progressive = marker == 0xc2;
     struct Sampling {
         std::uint64_t across, down;
     };
@@ -50,7 +55,7 @@ void read_frame(std::span<const unsigned char> segment, unsigned char marker, Jp
         components.push_back({segment[at + 1] / 16u, segment[at + 1] % 16u});
         most = {std::max(most.across, components.back().across), std::max(most.down, components.back().down)};
     }
-    const std::uint64_t bits_per_block = marker == 0xc2 ? 1 : 2;
+    const std::uint64_t bits_per_block = frame.is_progressive ? 1 : 2;
     frame.least_bits = 0;
     for (const Sampling& sampling : components) {
         frame.least_bits += divided_up(divided_up(frame.width * sampling.across, most.across), 8) *
@@ -67,9 +72,26 @@ void read_tables(std::span<const unsigned char> rest, std::size_t length, JpegFr
         std::size_t codes = 0;
         for (const unsigned char count : rest.subspan(1, std::min(Lengths, rest.size() - 1))) codes += count;
         frame.most_codes = std::max<std::uint64_t>(frame.most_codes, codes);
+        const std::size_t kind = rest[0] / 16u, number = rest[0] % 16u;
+        if (kind < 2 && number < 4) frame.has_table[kind][number] = true;
         const std::size_t size = 1 + Lengths + codes;
         length -= std::min(length, size);
         rest = rest.subspan(std::min(rest.size(), size));
+    }
+}
+
+// The tables that a scan reads: all scans of a baseline image both kinds, those of a progressive one DC in the first scan
+// of the lowest frequency, none in its refinements, and AC in the others. `segment` begins after the length.
+void read_scan(std::span<const unsigned char> segment, JpegFrame& frame) {
+    if (segment.empty() || segment.size() < 4 + 2 * std::size_t{segment[0]}) return;
+    const std::size_t components = segment[0];
+    const unsigned char first_frequency = segment[1 + 2 * components], bits = segment[3 + 2 * components];
+    const bool needs_dc = !frame.is_progressive || (first_frequency == 0 && bits / 16u == 0);
+    const bool needs_ac = !frame.is_progressive || first_frequency != 0;
+    for (std::size_t i = 0; i < components; ++i) {
+        const std::size_t dc = segment[2 + 2 * i] / 16u, ac = segment[2 + 2 * i] % 16u;
+        if (dc >= 4 || ac >= 4) return;  // an error of the decoder
+        frame.lacks_table |= (needs_dc && !frame.has_table[0][dc]) || (needs_ac && !frame.has_table[1][ac]);
     }
 }
 
@@ -101,6 +123,7 @@ JpegFrame read_frame(std::span<const unsigned char> bytes) {
                 read_frame(bytes.subspan(at + 2, length - 2), marker, frame);
             if (marker == StartOfScan) {
                 ++frame.scans;
+                read_scan(bytes.subspan(at + 2, length - 2), frame);
                 within = Within::Scan;
             }
             at += length;
@@ -128,6 +151,10 @@ Expected<void> check_jpeg(std::span<const unsigned char> bytes) {
         return failure(ErrorCode::InvalidInput, "the image has a Huffman table of " +
                                                     std::to_string(frame.most_codes) +
                                                     " codes, more than 256: save it again");
+    // stb_image 2.27 decodes with whatever its memory contained.
+    if (frame.lacks_table)
+        return failure(ErrorCode::InvalidInput,
+                       "the image lacks a Huffman table that its data needs: save it again");
     if (frame.scans > MaxJpegScans || frame.scans * pixels > MaxJpegScanPixels)
         return failure(ErrorCode::InvalidInput,
                        claim + "in " + std::to_string(frame.scans) +

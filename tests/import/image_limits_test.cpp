@@ -173,15 +173,22 @@ TEST(ImageLimits, APngCannotClaimMoreThanItsBytesHold) {
     EXPECT_THAT(refused.error().what(), testing::HasSubstr("but has only"));
 }
 
-// A JPEG of one component without any tables, with as many scans, and some bytes of data.
+std::string text(std::initializer_list<int> values) {
+    std::string bytes;
+    for (const int value : values) bytes += static_cast<char>(value);
+    return bytes;
+}
+
+// A Huffman table without codes: 0x00 to 0x03 for DC, 0x10 to 0x13 for AC.
+std::string empty_table(int number) {
+    return text({0xff, 0xc4, 0, 19, number}) + std::string(16, '\0');
+}
+
+// A progressive JPEG of one component with one empty table, with as many scans, and some bytes of data.
 std::string jpeg(int width, int height, int scans, std::size_t data) {
-    const auto text = [](std::initializer_list<int> values) {
-        std::string bytes;
-        for (const int value : values) bytes += static_cast<char>(value);
-        return bytes;
-    };
     std::string bytes = text({0xff, 0xd8, 0xff, 0xc2, 0, 11, 8, height >> 8, height & 255, width >> 8,
-                              width & 255, 1, 1, 0x11, 0});
+                              width & 255, 1, 1, 0x11, 0}) +
+                        empty_table(0);
     for (int i = 0; i < scans; ++i) bytes += text({0xff, 0xda, 0, 8, 1, 1, 0, 0, 0, 0});
     return bytes + std::string(data, '\x55') + "\xff\xd9";
 }
@@ -212,6 +219,26 @@ TEST(ImageLimits, AJpegCannotClaimMoreThanItsBytesHold) {
     const std::string large = jpeg(16384, 8192, 0, 0), small = jpeg(8, 8, 1, 0);
     EXPECT_THAT(refusal_of(large.substr(0, large.size() - 2) + small.substr(2)),
                 testing::HasSubstr("has only"));
+}
+
+// stb_image decodes with uninitialised memory in place of a table that is missing.
+TEST(ImageLimits, AJpegNeedsTheTablesOfItsScans) {
+    const auto baseline = [](const std::string& tables, int numbers) {
+        return text({0xff, 0xd8, 0xff, 0xc0, 0, 11, 8, 0, 8, 0, 8, 1, 1, 0x11, 0}) + tables +
+               text({0xff, 0xda, 0, 8, 1, 1, numbers, 0, 63, 0, 0x55, 0x55, 0xff, 0xd9});
+    };
+    const std::string both = empty_table(0x01) + empty_table(0x12);
+    EXPECT_EQ(refusal_of(baseline(both, 0x12)), "");
+    for (const int numbers : {0x02, 0x11, 0x32})
+        EXPECT_THAT(refusal_of(baseline(both, numbers)), testing::HasSubstr("lacks a Huffman table"));
+    EXPECT_THAT(refusal_of(baseline("", 0)), testing::HasSubstr("lacks a Huffman table"));
+    const auto progressive = [](int frequency, int bits) {
+        return text({0xff, 0xd8, 0xff, 0xc2, 0, 11, 8, 0, 8,         0,         8,    1,    1,    0x11,
+                     0,    0xff, 0xda, 0,    8, 1,  1, 0, frequency, frequency, bits, 0x55, 0xff, 0xd9});
+    };
+    EXPECT_THAT(refusal_of(progressive(0, 0)), testing::HasSubstr("lacks a Huffman table"));
+    EXPECT_EQ(refusal_of(progressive(0, 0x10)), "");  // a refinement of DC
+    EXPECT_THAT(refusal_of(progressive(1, 0x10)), testing::HasSubstr("lacks a Huffman table"));
 }
 
 }  // namespace
