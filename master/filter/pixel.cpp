@@ -102,7 +102,7 @@ class PixelFilter final : public Filter {
         if (!inputs.has(Channel::HighVariance))
             report.notes.push_back("channel 'high_variance' is missing: all light is filtered");
         if (!inputs.has(Channel::Headlight))
-            report.notes.push_back("channel 'range' is missing: only depth guides the filter");
+            report.notes.push_back("channel 'headlight' is missing: only depth guides the filter");
     }
 
     bool needs_pass(const Inputs& inputs, const Values& values, std::uint64_t samples) const {
