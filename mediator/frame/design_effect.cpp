@@ -11,8 +11,8 @@ namespace {
 constexpr std::size_t Radius = 4, Rows = 2 * Radius + 1;
 
 // Sums over pixels: errors of blocks and of their halves (merge.h), variance of the means of independent samples, and
-// variance of the first of these.
-enum Term : std::size_t { Top, Below, Independent, Uncertainty, TermCount };
+// variance of the first of these, as it is and if samples were independent.
+enum Term : std::size_t { Top, Below, Independent, Uncertainty, Chance, TermCount };
 
 // One row, term after term, each with Radius zeros on either side; 0 where nothing is known.
 void fill_row(const FilmTile& film, std::size_t y, std::size_t width, std::span<double> row) {
@@ -33,9 +33,11 @@ void fill_row(const FilmTile& film, std::size_t y, std::size_t width, std::span<
         terms[Top * padded] = top;
         terms[Below * padded] = below;
         terms[Independent * padded] = variance;
-        // Of a squared difference of mean e that is normally distributed, the square has mean 3 e^2 and the variance is
-        // 2 e^2. Of n - 1 such differences `variance` is the mean, and this is one of them.
-        terms[Uncertainty * padded] = 2.0 / 3.0 * top * top * (n - 2.0) / (n - 1.0);
+        // A squared difference of mean e that is normally distributed has the variance 2 e^2, and its square the mean
+        // 3 e^2. Of n - 1 such differences `variance` is the mean, and this is one of them.
+        const double share = (n - 2.0) / (n - 1.0);
+        terms[Uncertainty * padded] = 2.0 / 3.0 * top * top * share;
+        terms[Chance * padded] = 2.0 * variance * variance * share;
     }
 }
 
@@ -48,14 +50,17 @@ void pool_row(std::span<const double> padded, std::span<double> to) {
 }
 
 // The deviation of the ratio from 1 is shrunk by its uncertainty (James and Stein 1961, positive part), so that noise alone
-// makes no error smaller.
-float effect(double top, double below, double independent, double uncertainty) {
+// makes no error smaller. It does not count within one standard deviation of what independent samples give by chance, and
+// fully from sqrt(2) on: where one pixel has most of the variance, its finds may happen to be in both halves.
+float effect(double top, double below, double independent, double uncertainty, double chance) {
     if (!(independent > 0.0)) return 1.0f;
     constexpr double Random = 2.0, Edge = 2.8284271247461903, Least = 1e-6;
     const double deviation = 1.0 - top / independent;
     if (!(deviation > 0.0)) return 1.0f;
     const double noise = uncertainty / (independent * independent);
-    const double kept = std::max(0.0, 1.0 - noise / (deviation * deviation));
+    const double by_chance = std::max(chance / (independent * independent), 1e-30);
+    const double significance = std::clamp(deviation * deviation / by_chance - 1.0, 0.0, 1.0);
+    const double kept = significance * std::max(0.0, 1.0 - noise / (deviation * deviation));
     const double ratio = top > 0.0 ? std::clamp(below / top, Random, Edge) : Edge;
     const double growth = Random + (ratio - Random) * kept;
     return static_cast<float>(std::clamp((1.0 - deviation * kept) / std::sqrt(growth - 1.0), Least, 1.0));
@@ -92,8 +97,9 @@ std::span<const float> DesignEffect::measure(const FilmTile& film) {
             for (std::size_t i = 0; i < row_size; ++i) sums[i] += pooled[i];
         }
         for (std::size_t x = 0; x < width; ++x) {
-            effects_[y * width + x] = effect(sums[Top * width + x], sums[Below * width + x],
-                                             sums[Independent * width + x], sums[Uncertainty * width + x]);
+            effects_[y * width + x] =
+                effect(sums[Top * width + x], sums[Below * width + x], sums[Independent * width + x],
+                       sums[Uncertainty * width + x], sums[Chance * width + x]);
         }
     }
     return effects_;
