@@ -135,7 +135,7 @@ float floor_of(const Planes& filtered, std::vector<double>& rows, RunContext& co
 
 // Of the mean variance around it: a pixel with less has seen next to nothing of what causes that variance.
 constexpr float UnseenShare = 0.02f;
-constexpr float LeastDarker = 1e-3f;  // of the brightness of U to that of F
+constexpr float LeastDarker = 1e-3f;  // of the brightness of U to that of F: above 0 for any U
 constexpr float RareArea = 25.0f;     // pixels that see at most one find where light is rare
 
 // Of the pixels of one row that have seen next to nothing of the light that makes the noise around them: the

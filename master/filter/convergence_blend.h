@@ -28,8 +28,8 @@ namespace tessera::filter {
 //
 //     B_j = max(0, sum (d_j / S)^2 - sum N_j - sqrt(2 sum N_j^2))
 //
-// The last term is the standard error of a sum of squares of normal numbers: noise alone does not count as bias, which
-// would let single samples through as specks. Without it SSIM falls below that of F in rooms of indirect light.
+// The last term is the standard error of a sum of squares of independent normal numbers, which those of neighbours are
+// not quite: noise alone does not count as bias, which would let single samples through as specks. Without it SSIM falls below that of F in rooms of indirect light.
 //
 // Differences are relative to S, as in relMSE, so that bright pixels do not decide for dark neighbours. Where light is
 // found rarely that underestimates the error of spreading it: a dark pixel that F makes bright is measured against that

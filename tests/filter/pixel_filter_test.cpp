@@ -76,7 +76,7 @@ TEST(PixelFilter, HalvesTheErrorAtFourSamplesAndLowersItLater) {
 TEST(PixelFilter, MeetsTheThresholdInTheMedian) {
     constexpr int Seeds = 64;
     for (const char* choice : {"pixel:blend=off,root=simple", "pixel:blend=off"}) {
-        // The design effect of independent samples is 0.94 to 0.95 instead of 1 (frame/design_effect.h).
+        // The design effect of independent samples is a little below 1 (frame/design_effect.h).
         const double slack = std::string(choice) == "pixel:blend=off" ? 1.05 : 1.5;
         for (const std::uint64_t n : {4, 16}) {
             std::vector<double> sum(Size * Size, 0.0), squares(Size * Size, 0.0);

@@ -240,6 +240,17 @@ TEST(BlockVariance, OfBlocksOfABillionSamplesIsExact) {
     for (const float effect : design_effect(a)) EXPECT_EQ(effect, 1.0f);
 }
 
+// One pixel has nearly all of the variance, and its two finds happen to be in both halves of its samples.
+TEST(DesignEffect, IsNotSmallByTheChanceOfOnePixel) {
+    constexpr std::uint32_t Width = 21, Middle = 10 * Width + 10;
+    const FilmTile film = film_of(Width, Width, 16, [](std::uint32_t pixel, std::uint64_t sample) {
+        const bool found = pixel == Middle && (sample == 3 || sample == 11);
+        return grey(found ? 1000.0 : CounterRandom(pixel, sample).uniform());
+    });
+    EXPECT_LT(top_of(film, Middle), 1.0);
+    for (const float effect : design_effect(film)) EXPECT_GT(effect, 0.5f);
+}
+
 TEST(DesignEffect, IsOneWhereNothingIsKnown) {
     const auto all_ones = [](const FilmTile& film) {
         for (const float effect : design_effect(film)) {
