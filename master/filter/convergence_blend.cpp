@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "master/filter/box_sums.h"
+#include "master/filter/box_sum.h"
 #include "master/filter/kernels.h"
 
 namespace tessera::filter {
@@ -133,6 +133,48 @@ float floor_of(const Planes& filtered, std::vector<double>& rows, RunContext& co
     return std::max(0.1f * static_cast<float>(mean), 1e-30f);
 }
 
+// Sums of terms over the squares around the pixels of a block of rows, clipped to the picture.
+class SquareSums {
+  public:
+    static constexpr std::uint32_t Rows = 16;
+
+    static std::uint32_t block_count(std::uint32_t height) { return (height + Rows - 1) / Rows; }
+    // Numbers of memory for as many terms.
+    static std::size_t size(std::size_t width, std::uint32_t radius, std::size_t terms) {
+        return terms * Rows * width + (Rows + 2 * radius) * (2 * width + 2 * radius);
+    }
+
+    SquareSums(const Planes& terms, std::span<const std::uint32_t> which, std::uint32_t block,
+               std::uint32_t radius, float* memory)
+        : width_(terms.width()),
+          first_(block * Rows),
+          count_(std::min(Rows, terms.height() - first_)),
+          sums_(memory) {
+        const std::size_t pitch = width_ + 2 * std::size_t{radius};
+        float* values = memory + which.size() * Rows * width_;
+        float* between = values + (Rows + 2 * radius) * pitch;
+        for (std::size_t i = 0; i < which.size(); ++i) {
+            std::fill(values, between, 0.0f);
+            const std::uint32_t from = first_ > radius ? first_ - radius : 0;
+            const std::uint32_t to = std::min(terms.height(), first_ + Rows + radius);
+            for (std::uint32_t y = from; y < to; ++y)
+                std::copy_n(terms.row(which[i], y), width_, values + (y + radius - first_) * pitch + radius);
+            box_sum(values, pitch, width_, Rows, 2 * std::size_t{radius} + 1, between,
+                    memory + i * Rows * width_);
+        }
+    }
+
+    std::uint32_t first_row() const { return first_; }
+    std::uint32_t row_count() const { return count_; }
+    // Of term `which[i]` around the pixels of row first_row() + `row`.
+    const float* row(std::size_t i, std::uint32_t row) const { return sums_ + (i * Rows + row) * width_; }
+
+  private:
+    std::size_t width_;
+    std::uint32_t first_, count_;
+    const float* sums_;
+};
+
 // Of the mean variance around it: a pixel with less has seen next to nothing of what causes that variance.
 constexpr float UnseenShare = 0.02f;
 constexpr float LeastDarker = 1e-3f;  // of the brightness of U to that of F: above 0 for any U
@@ -211,8 +253,8 @@ bool ConvergenceBlend::weigh(const Inputs& inputs, frame::Channel filtered_part,
     for (Planes* planes : {&residual_, &wide_, &relative_, &narrow_})
         shape(*planes, inputs, filtered.components());
     const std::size_t width = inputs.width;
-    scratch_.reserve(context, BoxSums::size(width, radius_, ForWeights.size()) + 2 * width + 6);
-    const std::uint32_t blocks = BoxSums::block_count(inputs.height, radius_);
+    scratch_.reserve(context, SquareSums::size(width, radius_, ForWeights.size()) + 2 * width + 6);
+    const std::uint32_t blocks = SquareSums::block_count(inputs.height);
     return for_rows(context, inputs.height,
                     [&](std::uint32_t y) {
                         fill_residual(inputs, filtered_part, filtered, self_weight, floor, y, residual_,
@@ -220,7 +262,7 @@ bool ConvergenceBlend::weigh(const Inputs& inputs, frame::Channel filtered_part,
                     }) &&
            for_rows(context, blocks, [&](std::uint32_t block) { fill_bands(filtered, floor, block); }) &&
            for_rows(context, blocks, [&](std::uint32_t block) {
-               const BoxSums sums(terms_, ForWeights, block, radius_, scratch_.local());
+               const SquareSums sums(terms_, ForWeights, block, radius_, scratch_.local());
                for (std::uint32_t i = 0; i < sums.row_count(); ++i) {
                    for (std::uint32_t band = 0; band < Bands; ++band) {
                        divide(sums.row(0, i), sums.row(1, i), sums.row(2 + band, i), width, NoiseGain[band],
@@ -232,12 +274,12 @@ bool ConvergenceBlend::weigh(const Inputs& inputs, frame::Channel filtered_part,
 
 void ConvergenceBlend::fill_bands(const Planes& filtered, float floor, std::uint32_t block) {
     const std::size_t width = filtered.width();
-    const BoxSums sums(terms_, ForUnseen, block, radius_, scratch_.local());
-    float* unseen = scratch_.local() + BoxSums::size(width, radius_, ForUnseen.size());
-    const auto rows = static_cast<float>(BoxSums::rows_of(radius_));
+    const SquareSums sums(terms_, ForUnseen, block, radius_, scratch_.local());
+    float* unseen = scratch_.local() + SquareSums::size(width, radius_, ForUnseen.size());
+    const float side = 2.0f * static_cast<float>(radius_) + 1.0f;
     for (std::uint32_t i = 0; i < sums.row_count(); ++i) {
         const std::uint32_t y = sums.first_row() + i;
-        find_unseen(terms_.row(Noise, y), sums.row(0, i), sums.row(1, i), width, rows * rows, unseen);
+        find_unseen(terms_.row(Noise, y), sums.row(0, i), sums.row(1, i), width, side * side, unseen);
         for (std::uint32_t band = 0; band < Bands; ++band)
             std::fill_n(terms_.row(Square + band, y), width, 0.0f);
         for (std::uint32_t c = 0; c < filtered.components(); ++c) {

@@ -281,6 +281,29 @@ TEST(ConvergenceBlend, LeavesNoNegativeLight) {
     }
 }
 
+// Sums are made in blocks of rows, which lie differently in a picture that is upside down.
+TEST(ConvergenceBlend, OfAPictureUpsideDownIsUpsideDown) {
+    const auto flipped = [](const Planes& planes) {
+        Planes out = planes;
+        for (std::uint32_t c = 0; c < planes.components(); ++c) {
+            for (std::uint32_t y = 0; y < planes.height(); ++y)
+                std::copy_n(planes.row(c, y), planes.width(), out.row(c, planes.height() - 1 - y));
+        }
+        return out;
+    };
+    for (const auto& [width, height] : {std::pair{37u, 29u}, {5u, 3u}, {1u, 1u}, {20u, 17u}}) {
+        const Planes truth = shadowed_texture_truth(width, height);
+        Inputs inputs = noisy(truth, 64);
+        const Planes filtered = run_filter("gauss:sigma=2", inputs).picture;
+        const Planes out = blended(inputs, filtered);
+        inputs.means[0] = flipped(inputs.means[0]);
+        inputs.variances[0] = flipped(inputs.variances[0]);
+        const Planes other = flipped(blended(inputs, flipped(filtered)));
+        for (std::size_t i = 0; i < out.values().size(); ++i)
+            ASSERT_NEAR(out.values()[i], other.values()[i], 1e-5f);
+    }
+}
+
 TEST(ConvergenceBlend, AlphaWithTheSameWeight) {
     const Planes truth = uniform(0.3f);
     Inputs inputs = noisy(truth, 64);

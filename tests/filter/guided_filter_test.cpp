@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "master/filter/guided/box_sum.h"
+#include "master/filter/box_sum.h"
 #include "master/filter/guided/local_models.h"
 #include "master/filter/guided/ridge.h"
 #include "mediator/base/random.h"
@@ -13,7 +13,19 @@
 namespace tessera::filter {
 namespace {
 
-TEST(GuidedBoxSum, EqualsTheSum) {
+TEST(BoxSum, LargeValuesLeaveNoRoundingInSmallOnes) {
+    constexpr std::size_t Size = 20, N = 11, Pitch = Size + N - 1;
+    std::vector<float> values(Pitch * Pitch, 1e-3f), between(Size * Pitch), sums(Size * Size);
+    values[2 * Pitch + 2] = 1e30f;
+    box_sum(values.data(), Pitch, Size, Size, N, between.data(), sums.data());
+    for (std::size_t y = 0; y < Size; ++y) {
+        for (std::size_t x = 0; x < Size; ++x)
+            ASSERT_NEAR(sums[y * Size + x] / (x <= 2 && y <= 2 ? 1e30 : 1e-3 * N * N), 1.0, 1e-5)
+                << x << " " << y;
+    }
+}
+
+TEST(BoxSum, EqualsTheSum) {
     constexpr std::size_t Width = 11, Height = 7;
     for (std::size_t n = 1; n <= 17; ++n) {
         const std::size_t pitch = Width + n - 1, rows = Height + n - 1;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "master/filter/guided/box_sum.h"
+#include "master/filter/box_sum.h"
 #include "master/filter/guided/ridge.h"
 #include "master/filter/kernels.h"
 
