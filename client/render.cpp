@@ -7,11 +7,11 @@ constexpr std::uint64_t ViewNumber = std::uint64_t{1} << 32;  // beyond those th
 }
 
 ViewResult render(Session& session, session::ViewRequest request,
-                  const std::function<void(const session::ViewProgress&)>& on_progress,
-                  std::stop_token stop) {
+                  const std::function<void(const session::ViewProgress&)>& on_progress, std::stop_token stop,
+                  Session::AfterEnd after) {
     request.frames = session::Frames::Last;
     session.request_view(ViewNumber, request);
-    return session.wait_for_end(ViewNumber, on_progress, stop);
+    return session.wait_for_end(ViewNumber, on_progress, stop, after);
 }
 
 }  // namespace tessera::client

@@ -8,8 +8,9 @@
 namespace tessera::client {
 
 // Requests a view of the scene that the session is in and waits for its last frame. A stop requests the samples
-// merged so far from the master.
+// merged so far from the master. Keep: the next call continues the view, so that its denoiser has a history.
 ViewResult render(Session& session, session::ViewRequest request,
-                  const std::function<void(const session::ViewProgress&)>& on_progress, std::stop_token stop);
+                  const std::function<void(const session::ViewProgress&)>& on_progress, std::stop_token stop,
+                  Session::AfterEnd after = Session::AfterEnd::Close);
 
 }  // namespace tessera::client

@@ -121,10 +121,12 @@ class Session {
     std::optional<session::ViewProgress> take_progress(std::uint64_t number);
     // The summary of a view that has ended; returned once.
     std::optional<session::ViewSummary> take_summary(std::uint64_t number);
-    // Waits for the end of a view and closes it; a stop requests the samples merged so far. See client/render.h.
+    // Waits for the end of a view; a stop requests the samples merged so far. Then closes it, or keeps it with the history
+    // of its denoiser, to be requested again under its number. See client/render.h.
+    enum class AfterEnd { Close, Keep };
     ViewResult wait_for_end(std::uint64_t number,
                             const std::function<void(const session::ViewProgress&)>& on_progress,
-                            std::stop_token stop);
+                            std::stop_token stop, AfterEnd after = AfterEnd::Close);
     // Changes the filter of the view with this name; "" = the only view that this key may change. Returns a
     // description of the effect. Throws Error{Refused} for another's view, unless this key is an operator's.
     std::string set_filter(const std::string& view, const std::string& filter);

@@ -82,7 +82,7 @@ std::optional<session::ViewSummary> Session::take_summary(std::uint64_t number) 
 
 ViewResult Session::wait_for_end(std::uint64_t number,
                                  const std::function<void(const session::ViewProgress&)>& on_progress,
-                                 std::stop_token stop) {
+                                 std::stop_token stop, AfterEnd after) {
     Implementation& self = *implementation_;
     TimePoint last_sign = self.clock.now();
     while (true) {
@@ -92,7 +92,12 @@ ViewResult Session::wait_for_end(std::uint64_t number,
         if (done != self.ended_views.end() && frame != self.frames.end() &&
             frame->second.number == done->second.frame) {
             ViewResult result{std::move(done->second.summary), std::move(frame->second)};
-            close_view(number);
+            if (after == AfterEnd::Close) {
+                close_view(number);
+            } else {
+                self.link.send(wire::FrameTaken{number, result.frame.number});
+                self.forget_view(number);
+            }
             return result;
         }
         // The last frame may arrive before the ViewDone message.

@@ -187,7 +187,8 @@ class Render {
         result_ = client::render(
             *session_, plan_.job,
             [&](const session::ViewProgress& progress) { line.show(where_ + describe(progress, plan_.job)); },
-            interrupts_.token());
+            interrupts_.token(),
+            plan_.sequence ? client::Session::AfterEnd::Keep : client::Session::AfterEnd::Close);
     }
 
     // Complete pictures only: the fractions of a partial picture would be wrong.

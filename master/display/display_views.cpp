@@ -69,13 +69,14 @@ bool DisplayService::can_take() const {
 // Uses the plan of the request for this stage: the display may have been adjusted since.
 void DisplayService::take(const GroupStage& stage) {
     const display::Display& display = open_->display;
-    Frame& frame = open_->in_progress.emplace_back(Frame{.number = next_frame_++, .version = stage.version});
+    Frame& frame =
+        open_->in_progress.emplace_back(Frame{.number = next_frame_++, .version = stage.scene.version});
     frame.missing = display.outputs.size();
     frame.outputs.resize(display.outputs.size());
     auto view = stage.views.begin();
     for (std::size_t i = 0; i < display.outputs.size(); ++i) {
         const std::vector<PlannedEye>& eyes = open_->plan.at(i);
-        OutputRequest request{.frame = frame.number, .output = i, .version = stage.version, .eyes = {}};
+        OutputRequest request{.frame = frame.number, .output = i, .scene = stage.scene, .eyes = {}};
         request.encoding = display::takes_linear_light(display.outputs[i]) ? session::PictureEncoding::Half
                                                                            : session::PictureEncoding::Bytes;
         request.transform = {display.view_transform, display.exposure, display.white};

@@ -94,6 +94,12 @@ std::uint64_t Delivery::watchers(ViewId view) const {
         watchers_.begin(), watchers_.end(), [&](const auto& entry) { return entry.second.view == view; }));
 }
 
+bool Delivery::has_taken_end(SessionId session, std::uint64_t number) const {
+    const auto watcher = watchers_.find({session, number});
+    return watcher != watchers_.end() && watcher->second.frame_in_flight == 0 && watcher->second.seen &&
+           watcher->second.seen->complete;
+}
+
 std::vector<std::uint64_t> Delivery::numbers(SessionId session) const {
     std::vector<std::uint64_t> numbers;
     for (const auto& [key, watcher] : watchers_) {
@@ -168,7 +174,7 @@ void Delivery::begin(const ViewState& view, const FrameFormat& format, std::vect
     if (pending.is_end && nothing_to_make) return ship(frame, std::move(pending), {});
     const bool hash = pending.shown.complete && !waited;
     film_.reconstruct(
-        frame, pass.view, view.version,
+        frame, pass.view, {view.version, views_.last_edits},
         {format.picture, format.transform, view.id, tiles_without_samples(view), view.request.view.window},
         hash ? FilmStore::FilmHash::Wanted : FilmStore::FilmHash::NotWanted);
     pending_.emplace(frame, std::move(pending));

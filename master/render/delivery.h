@@ -57,6 +57,7 @@ class Delivery {
 
     std::optional<ViewId> watched(SessionId session, std::uint64_t number) const;
     std::uint64_t watchers(ViewId view) const;
+    bool has_taken_end(SessionId session, std::uint64_t number) const;  // and acknowledged it
     std::vector<std::uint64_t> numbers(SessionId session) const;
 
     // Starts frames of the displayed state for watchers that have no frame in flight and have not seen it. At

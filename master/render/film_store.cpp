@@ -42,9 +42,9 @@ void FilmStore::copy(ViewId view) {
     enqueue(Copy{view}, 0);
 }
 
-void FilmStore::reconstruct(std::uint64_t frame, const view::View& view, Version version,
+void FilmStore::reconstruct(std::uint64_t frame, const view::View& view, const SceneState& scene,
                             const PictureFormat& format, FilmHash hash) {
-    enqueue(Reconstruct{frame, view, version, format, hash}, 0);
+    enqueue(Reconstruct{frame, view, scene, format, hash}, 0);
 }
 
 void FilmStore::reconstruct_output(OutputRequest request) {
@@ -176,7 +176,7 @@ void FilmStore::perform(Reconstruct& task) {
                     .later = opened->assembler->later(),
                     .features = opened->features,
                     .view = std::move(task.view),
-                    .version = task.version,
+                    .scene = task.scene,
                     .format = task.format,
                     .hash_film = task.hash == FilmHash::Wanted});
 }

@@ -39,8 +39,8 @@ class FilmStore {
     void copy(ViewId view);  // results in FilmBlocks, or in nothing when there is no such film
 
     enum class FilmHash { Wanted, NotWanted };
-    // Of the film of view.id, which shows `version`. No result when there is no such film.
-    void reconstruct(std::uint64_t frame, const view::View& view, Version version,
+    // Of the film of view.id, which shows `scene`. No result when there is no such film.
+    void reconstruct(std::uint64_t frame, const view::View& view, const SceneState& scene,
                      const PictureFormat& format, FilmHash hash);
     // Of the films of all layers of all eyes. Always has a result, with an error when a film is gone.
     void reconstruct_output(OutputRequest request);
@@ -86,7 +86,7 @@ class FilmStore {
     struct Reconstruct {
         std::uint64_t frame;
         view::View view;
-        Version version;
+        SceneState scene;
         PictureFormat format;
         FilmHash hash;
     };

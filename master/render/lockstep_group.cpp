@@ -95,6 +95,7 @@ std::vector<ViewId> LockstepGroup::restart(const std::vector<GroupView>& wanted,
         view.restart_wanted = false;
         view.problem.clear();
         view.camera_revision = ++view.revision;
+        ++view.films;
         for (std::size_t old = 1; old < view.passes.size(); ++old) passes_.end(view.passes[old].view.id);
         view.passes = passes_of(view, coarsest);
         view.current = 0;
@@ -195,10 +196,10 @@ void LockstepGroup::advance_views() {
 }
 
 GroupStage LockstepGroup::stage() const {
-    GroupStage stage{.version = open_->version, .views = {}};
+    GroupStage stage{.scene = {open_->version, views_.last_edits}, .views = {}};
     for (const ViewId id : open_->views) {
         const ViewState& view = *views_.find(id);
-        stage.version = view.version;
+        stage.scene.version = view.version;
         stage.scale = view.pass().scale;
         stage.views.push_back(view.pass().view);
     }

@@ -19,7 +19,7 @@ struct GroupView {
 // A consistent state of all views of a group: same scene, revision, resolution scale and samples per pixel
 // (times the priority). When films are resampled, pixels may have different, higher sample counts.
 struct GroupStage {
-    Version version;
+    SceneState scene;
     std::vector<view::View> views;  // as rendered at this stage; their films are complete
     std::uint32_t scale = 1;        // 8, 4, 2: a coarse picture at 1/scale of the size
 };

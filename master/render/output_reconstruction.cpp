@@ -84,7 +84,7 @@ PictureLight light_of(const filter::Planes& picture) {
     return light;
 }
 
-PictureLight light_of(const frame::FilmTile& film, const view::View& view, Version version,
+PictureLight light_of(const frame::FilmTile& film, const view::View& view, const SceneState& scene,
                       Reconstructor& reconstructor) {
     PictureLight light{static_cast<std::uint32_t>(film.rect.width),
                        static_cast<std::uint32_t>(film.rect.height)};
@@ -94,7 +94,7 @@ PictureLight light_of(const frame::FilmTile& film, const view::View& view, Versi
         light.counts = film.counts.data();
         return light;
     }
-    return light_of(reconstructor.filtered(film, view, version));
+    return light_of(reconstructor.filtered(film, view, scene));
 }
 
 // Copy of a filtered picture, for when several are needed at a time: r, g, b and, if present, alpha.
@@ -115,12 +115,12 @@ std::span<const float> depth_of(const frame::FilmTile& film) {
 }
 
 // Composites the layers. Each was rendered without the objects of the others, on a transparent background.
-void composite(std::span<const view::View> views, std::span<const frame::FilmTile> films, Version version,
-               Reconstructor& reconstructor, filter::Planes& out) {
+void composite(std::span<const view::View> views, std::span<const frame::FilmTile> films,
+               const SceneState& scene, Reconstructor& reconstructor, filter::Planes& out) {
     std::vector<Copied> copies;
     std::vector<Layer> layers;
     for (std::size_t i = 0; i < views.size(); ++i)
-        copies.emplace_back(reconstructor.filtered(films[i], views[i], version));
+        copies.emplace_back(reconstructor.filtered(films[i], views[i], scene));
     for (std::size_t i = 0; i < views.size(); ++i) {
         const auto& planes = copies[i].planes;
         layers.push_back(
@@ -176,9 +176,9 @@ OutputResult reconstruct_output(OutputRequest request, const std::vector<frame::
             rest = rest.subspan(eye.layers.size());
             PictureLight light;
             if (own.size() == 1) {
-                light = light_of(own.front(), eye.layers.front(), result.request.version, reconstructor);
+                light = light_of(own.front(), eye.layers.front(), result.request.scene, reconstructor);
             } else {
-                composite(eye.layers, own, result.request.version, reconstructor, composed);
+                composite(eye.layers, own, result.request.scene, reconstructor, composed);
                 light = light_of(composed);
             }
             result.eyes.push_back(encoded(light, transform, result.request.encoding, reconstructor.arena()));

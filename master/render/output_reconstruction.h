@@ -21,7 +21,7 @@ struct OutputRequest {
     };
     std::uint64_t frame = 0;
     std::size_t output = 0;
-    Version version;  // of the scene that the films show
+    SceneState scene;  // in the films
     std::vector<EyePicture> eyes;
     session::PictureEncoding encoding = session::PictureEncoding::Bytes;  // or Half
     picture::ViewTransform transform{view::ViewTransform::Linear, 0.0};   // the same for all outputs

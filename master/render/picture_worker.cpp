@@ -59,7 +59,7 @@ Reconstructed PictureWorker::reconstruct(const PictureTask& task) {
         result.picture = reconstructor_.reconstruct({.film = task.film,
                                                      .later = task.later ? &*task.later : nullptr,
                                                      .features = task.features.get()},
-                                                    task.view, task.version, task.format);
+                                                    task.view, task.scene, task.format);
     }
     return result;
 }

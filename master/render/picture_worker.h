@@ -16,7 +16,7 @@ struct PictureTask {
     std::optional<frame::FilmTile> later;             // with channels that `film` lacks
     std::shared_ptr<const frame::FilmTile> features;  // of the full size, to upsample by; may be null
     view::View view;
-    Version version;       // of the scene that the film shows
+    SceneState scene;      // in the film
     PictureFormat format;  // None: only facts about the film
     bool hash_film = false;
 };

@@ -39,8 +39,8 @@ std::optional<picture::FileFormat> file_format(session::PictureEncoding encoding
 
 }  // namespace
 
-filter::Filter& Reconstructor::instance(const filter::Choice& choice, const view::View& view, Version version,
-                                        filter::Inputs& inputs) {
+filter::Filter& Reconstructor::instance(const filter::Choice& choice, const view::View& view,
+                                        const SceneState& scene, filter::Inputs& inputs) {
     Instance& instance = instances_[view.id];
     inputs.changes = {};
     const std::string name(choice.entry->description.name);
@@ -48,14 +48,12 @@ filter::Filter& Reconstructor::instance(const filter::Choice& choice, const view
         instance.height != inputs.height) {
         instance = {name, inputs.width, inputs.height, choice.entry->make(inputs.width, inputs.height)};
     } else {
-        // The scene's changes are unknown here: anything may have changed, unless the film continued.
-        const bool restarted = instance.revision != view.revision;
-        const bool other_scene = restarted && instance.version != version;
-        inputs.changes = {
-            .film_restarted = restarted, .lights_or_materials = other_scene, .geometry = other_scene};
+        inputs.changes = {.film_restarted = instance.revision != view.revision,
+                          .lights_or_materials = instance.version < scene.edits.lights_or_materials,
+                          .geometry = instance.version < scene.edits.geometry};
     }
     instance.revision = view.revision;
-    instance.version = version;
+    instance.version = scene.version;
     return *instance.filter;
 }
 
@@ -89,7 +87,7 @@ std::vector<std::byte> Reconstructor::encode(const filter::Planes& picture, cons
     return picture::encode_picture(image, *file, summary.display_transform);
 }
 
-Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& view, Version version,
+Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& view, const SceneState& scene,
                                           const PictureFormat& format) {
     Reconstruction result{.bytes = std::make_shared<const std::vector<std::byte>>()};
     session::PictureSummary& summary = result.summary;
@@ -102,7 +100,7 @@ Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& 
     try {
         const auto started = Clock::now();
         filter::resolve_inputs(films.film, view, films.later, inputs_);
-        filter::Filter& filter = instance(*choice, view, version, inputs_);
+        filter::Filter& filter = instance(*choice, view, scene, inputs_);
         const filter::Report report = filter.run(inputs_, choice->values, output_, {arena_, {}});
         const filter::Planes* picture = &output_.picture;
         if (films.features != nullptr) {
@@ -130,11 +128,11 @@ Reconstruction Reconstructor::reconstruct(const Films& films, const view::View& 
 }
 
 const filter::Planes& Reconstructor::filtered(const frame::FilmTile& film, const view::View& view,
-                                              Version version) {
+                                              const SceneState& scene) {
     const auto choice = filter::parse_choice(view.filter, filter::catalog());
     if (!choice) throw choice.error();
     filter::resolve_inputs(film, view, nullptr, inputs_);
-    instance(*choice, view, version, inputs_).run(inputs_, choice->values, output_, {arena_, {}});
+    instance(*choice, view, scene, inputs_).run(inputs_, choice->values, output_, {arena_, {}});
     return output_.picture;
 }
 

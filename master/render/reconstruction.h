@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "master/render/scene_state.h"
 #include "mediator/filter/choice.h"
 #include "mediator/frame/film_tile.h"
 #include "mediator/wire/messages.h"
@@ -40,12 +41,13 @@ struct PictureFormat {
 // cores.
 class Reconstructor {
   public:
-    // Of view.id; `version` is that of the scene in the film.
-    Reconstruction reconstruct(const Films& films, const view::View& view, Version version,
+    // Of view.id; `scene` is in the film.
+    Reconstruction reconstruct(const Films& films, const view::View& view, const SceneState& scene,
                                const PictureFormat& format);
 
     // The filtered picture only, owned by this object until the next call. Throws Error.
-    const filter::Planes& filtered(const frame::FilmTile& film, const view::View& view, Version version);
+    const filter::Planes& filtered(const frame::FilmTile& film, const view::View& view,
+                                   const SceneState& scene);
     tbb::task_arena& arena() { return arena_; }
 
     // Seconds that a reconstruction takes for a synthetic film of this size: for the first prediction.
@@ -64,7 +66,7 @@ class Reconstructor {
         Version version;
     };
     // Ready for the picture; sets in `inputs` what has changed since the previous one.
-    filter::Filter& instance(const filter::Choice& choice, const view::View& view, Version version,
+    filter::Filter& instance(const filter::Choice& choice, const view::View& view, const SceneState& scene,
                              filter::Inputs& inputs);
     std::vector<std::byte> encode(const filter::Planes& picture, const PictureFormat& format,
                                   session::PictureSummary& summary);

@@ -31,7 +31,8 @@ void Views::session_left(SessionId session, DisconnectReason reason, TimePoint n
     for (const std::uint64_t number : delivery_.numbers(session)) {
         ViewState& view = *table_.find(*delivery_.watched(session, number));
         const bool is_owner = view.owner.session == session;
-        if (reason == DisconnectReason::Graceful || (!view.shows_all() && !is_owner)) {
+        const bool has_its_end = view.has_ended() && delivery_.has_taken_end(session, number);
+        if (reason == DisconnectReason::Graceful || has_its_end || (!view.shows_all() && !is_owner)) {
             end(session, {.number = number}, now);
             continue;
         }
@@ -73,6 +74,7 @@ void Views::restore(std::vector<wire::SavedView>&& saved, Version version, Hash1
         if (old.blocks.empty() || old.scene_hash_of_film != scene_hash || view.request.stop.has_clock())
             continue;
         if (request.reproducible && old.kind.empty()) continue;  // by which nodes is unknown
+        view.films = old.films;
         runner_.resume(view, std::move(old.blocks), old.kind, now);
     }
 }

@@ -14,6 +14,7 @@ using session::Phase;
 void ViewRunner::restart(ViewState& view, TimePoint now) {
     passes_.end_all(view);
     ++view.revision;
+    ++view.films;
     view.camera_revision = view.asked_revision;
     view.restart_wanted = false;
     view.failed_tiles.clear();

@@ -19,6 +19,7 @@ void ViewSaver::save(Hash128 scene_hash) {
                  .request = view.request,
                  .scene_hash_of_film = scene_hash,
                  .kind = view.run.kind,
+                 .films = view.films,
                  .blocks = {}};
         const Scheduler* pass = accumulating(view);
         if (pass == nullptr || pass->merged_samples() == 0) continue;

@@ -81,6 +81,7 @@ struct ViewState {
     std::uint64_t asked_revision = 0;  // of the request
     std::uint64_t camera_revision = 0;
     std::uint64_t revision = 0;  // of the passes
+    std::uint64_t films = 0;     // begun, the current one included
     Version version;             // of the scene in the film
     std::vector<Pass> passes;
     std::size_t current = 0;     // index of the current pass
@@ -105,13 +106,16 @@ struct ViewState {
     bool awaiting_first_frame() const {
         return shows_all() && problem.empty() && !passes.empty() && (!shown || shown->revision != revision);
     }
+    // Its client waited for the end, which is decided: it is not rendered again unless the client asks for it.
+    bool has_ended() const { return !shows_all() && run.outcome.has_value(); }
     bool is_complete() const { return shown && shown->complete && shown->revision == revision; }
 };
 
 // Whether a picture at 1/`scale` of the size still has 16 pixels a side.
 bool has_coarse_pass(const view::View& view, std::uint32_t scale);
 // The passes of a view: if it shows all frames, coarse passes at 1/8, 1/4 and 1/2 of its size (where has_coarse_pass(),
-// and not coarser than 1/`coarsest`); features if it is upsampled; then the picture.
+// and not coarser than 1/`coarsest`); features if it is upsampled; then the picture. If it shows all frames and its filter
+// keeps a history, every film has a seed of its own: equal random numbers would not average out over pictures.
 std::vector<Pass> passes_of(const ViewState& view, std::uint32_t coarsest = 8);
 
 inline constexpr std::size_t MaxPasses = 8;  // of a view

@@ -41,15 +41,16 @@ session::ViewProgress progress_of(const ViewState& view, std::uint32_t nodes) {
 session::ViewSummary summary_of(const ViewState& view, const SceneFacts& facts,
                                 const session::WireBytes& bytes) {
     const Run& run = view.run;
-    session::ViewSummary done{.outcome = *run.outcome,
-                              .message = run.message,
-                              .version = view.version,
-                              .seed = view.request.view.seed,
-                              .rays = run.rays,
-                              .nonfinite_samples = run.nonfinite_samples,
-                              .triangles = facts.triangles,
-                              .instances = facts.instances,
-                              .lights = facts.lights};
+    session::ViewSummary done{
+        .outcome = *run.outcome,
+        .message = run.message,
+        .version = view.version,
+        .seed = view.passes.empty() ? view.request.view.seed : view.passes.back().view.seed,
+        .rays = run.rays,
+        .nonfinite_samples = run.nonfinite_samples,
+        .triangles = facts.triangles,
+        .instances = facts.instances,
+        .lights = facts.lights};
     if (!view.passes.empty()) {
         done.seconds_render = seconds(*run.ended - run.rendering_since);
         done.samples = run.samples;

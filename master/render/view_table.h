@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "master/render/scene_state.h"
 #include "master/render/view_state.h"
 
 namespace tessera::master {
@@ -54,6 +55,7 @@ class ViewTable {
     const std::map<ViewId, ViewState>& all() const { return views_; }
 
     SceneFacts facts;
+    LastEdits last_edits;
     session::WireBytes
         bytes_at_start;  // of the master, before the scene was opened: baseline of the views' traffic
     // Changes wait to be published: no pass begins until then.

@@ -68,13 +68,16 @@ std::string Views::open(const ViewOwner& owner, std::uint64_t number, session::V
     view->name = request.name;
     view->orphaned.reset();
     const Delivery::FrameFormat format = format_of(request);
+    // Ended views do not follow the scene, and who has one's end wants another.
+    const bool again =
+        view->has_ended() && (view->version != version || delivery_.has_taken_end(owner.session, number));
     delivery_.watch(owner.session, number, view->id, format);
     if (request.detached) {
         delivery_.keep(view->id, format);  // its end is for take_ended_jobs()
     } else {
         delivery_.release(view->id);  // its owner is back
     }
-    change(*view, std::move(request), version, now);
+    change(*view, std::move(request), version, again, now);
     return {};
 }
 
@@ -105,7 +108,8 @@ ViewState* Views::find_or_add(const ViewOwner& owner, std::uint64_t number, cons
     return &table_.add();
 }
 
-void Views::change(ViewState& view, session::ViewRequest&& request, Version version, TimePoint now) {
+void Views::change(ViewState& view, session::ViewRequest&& request, Version version, bool again,
+                   TimePoint now) {
     const view::View asked = std::exchange(view.asked, request.view);
     complete(request.view);
     request.view.id = view.request.view.id;
@@ -121,9 +125,9 @@ void Views::change(ViewState& view, session::ViewRequest&& request, Version vers
     view.request.display_transform = request.display_transform;
     view.request.min_nodes = request.min_nodes;
     view.request.wait_limit = request.wait_limit;
-    if (same_terms && request.view == view.request.view) return;
+    if (same_terms && !again && request.view == view.request.view) return;
     ++view.asked_revision;
-    if (same_terms && !view.restart_wanted && differ_in_filter_alone(asked, view.asked)) {
+    if (same_terms && !again && !view.restart_wanted && differ_in_filter_alone(asked, view.asked)) {
         const FilterChange change = filter_change(view.request.view, request.view.filter);
         const bool goes_on = change.effect == FilterChange::Effect::Kept ||
                              (change.effect == FilterChange::Effect::Widened && !view.run.outcome);
@@ -216,7 +220,7 @@ std::string Views::set_filter(const SessionRecord& asker, const std::string& nam
         session::ViewRequest wanted = view.request;
         wanted.view = view.asked;
         wanted.view.filter = filter;
-        this->change(view, std::move(wanted), view.version, now);
+        this->change(view, std::move(wanted), view.version, false, now);
         if (change.effect == FilterChange::Effect::Restarted)
             return "filter " + change.view.filter +
                    "; the view restarts, since the filter needs other channels or path classes";
@@ -264,9 +268,13 @@ bool Views::may_publish() const {
 }
 
 bool Views::scene_changed(const scene::ChangeList& changes, const scene::Scene& after) {
-    const bool restarts = changes_pictures(changes, after);
+    const PictureEffect effect = picture_effect(changes, after);
+    const bool restarts = effect.samples;
+    if (effect.lights_or_materials) table_.last_edits.lights_or_materials = changes.to;
+    if (effect.geometry) table_.last_edits.geometry = changes.to;
     group_.scene_changed(changes.to, restarts);
     for (auto& [id, view] : table_.all()) {
+        if (view.has_ended()) continue;
         view.version = changes.to;
         if (restarts) {
             view.problem.clear();
@@ -318,7 +326,7 @@ void Views::restart_group(const std::vector<GroupView>& wanted, TimePoint now) {
 
 std::optional<GroupStage> Views::next_group_stage(LockstepGroup::Consumer consumer, TimePoint now) {
     auto stage = group_.advance(consumer);
-    if (stage && group_.is_first_stage()) runner_.is_first_picture(stage->version, now);
+    if (stage && group_.is_first_stage()) runner_.is_first_picture(stage->scene.version, now);
     return stage;
 }
 

@@ -112,7 +112,8 @@ class Views {
                            std::string& problem);
     std::string name_of_unnamed(const ViewOwner& owner, std::uint64_t number) const;
     ViewState& view_to_filter(const SessionRecord& asker, const std::string& name);
-    void change(ViewState& view, session::ViewRequest&& request, Version version, TimePoint now);
+    // again: from the start, even if the request is the same.
+    void change(ViewState& view, session::ViewRequest&& request, Version version, bool again, TimePoint now);
     void remove(ViewId view);
     void forget_orphans(TimePoint now);
     void deliver(TimePoint now);

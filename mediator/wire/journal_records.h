@@ -169,7 +169,8 @@ struct SavedView {
     std::uint64_t owner_key = 0, number = 0;
     session::ViewRequest request;
     Hash128 scene_hash_of_film;
-    std::string kind;  // of the nodes that rendered its blocks, if the view is reproducible
+    std::string kind;         // of the nodes that rendered its blocks, if the view is reproducible
+    std::uint64_t films = 0;  // begun for the view, that of the blocks included
     std::vector<frame::FilmTile> blocks;
     std::uint64_t block_count = 0;  // when decoded: the number of blocks that follow in the file
     static constexpr auto describe(auto row) {
@@ -193,7 +194,8 @@ struct SavedView {
                              return std::max<std::uint64_t>(view.blocks.size(), view.block_count);
                          },
                          [](SavedView& view, std::uint64_t count) { view.block_count = count; }}),
-            row(9, "request", &SavedView::request), row(10, "kind", &SavedView::kind));
+            row(9, "request", &SavedView::request), row(10, "kind", &SavedView::kind),
+            row(11, "films", &SavedView::films));
     }
 };
 

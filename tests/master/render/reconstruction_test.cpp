@@ -45,10 +45,10 @@ frame::FilmTile noise(const view::View& view, std::uint64_t seed) {
 }
 
 std::vector<std::byte> picture(Reconstructor& reconstructor, const view::View& view, std::uint64_t seed,
-                               Version version = Scene) {
+                               const SceneState& scene = {Scene, {}}) {
     const frame::FilmTile film = noise(view, seed);
     const Reconstruction made = reconstructor.reconstruct(
-        {.film = film}, view, version,
+        {.film = film}, view, scene,
         {.encoding = session::PictureEncoding::Planes, .transform = {}, .view = {}});
     EXPECT_EQ(made.error, "");
     return *made.bytes;
@@ -59,6 +59,23 @@ TEST(Reconstructor, TemporalFilterKeepsHistoryPerView) {
     const auto alone = picture(fresh, psvgf_view(8, 2), 2);
     (void)picture(used, psvgf_view(8, 1), 1);
     EXPECT_NE(picture(used, psvgf_view(8, 2), 2), alone) << "the picture before is history";
+}
+
+// The history is doubted after an edit of light or shape that came since the previous picture, also when the picture in
+// between was never made; not after others.
+TEST(Reconstructor, EditsSinceThePreviousPictureMakeHistoryDoubtful) {
+    const auto second = [](Version first, const SceneState& scene) {
+        Reconstructor reconstructor;
+        (void)picture(reconstructor, psvgf_view(8, 1), 1, {first, {}});
+        return picture(reconstructor, psvgf_view(8, 2), 2, scene);
+    };
+    const Version v1{1, 1}, v2{1, 2}, v3{1, 3};
+    const auto trusted = second(v1, {v1, {}});
+    EXPECT_EQ(second(v1, {v2, {}}), trusted) << "a name or a camera";
+    EXPECT_EQ(second(v2, {v3, {.lights_or_materials = v2, .geometry = v1}}), trusted) << "before it";
+    const auto doubted = second(v1, {v2, {.lights_or_materials = v2, .geometry = {}}});
+    EXPECT_NE(doubted, trusted);
+    EXPECT_EQ(second(v1, {v3, {.lights_or_materials = v2, .geometry = {}}}), doubted);
 }
 
 TEST(Reconstructor, ViewsAreIndependent) {
@@ -95,7 +112,7 @@ TEST(Reconstructor, AllPicturesOfAViewUseTheFirstExposure) {
             std::fill(values.begin(), values.end(), light);
         }
         const Reconstruction made =
-            reconstructor.reconstruct({.film = film}, view, Scene,
+            reconstructor.reconstruct({.film = film}, view, {Scene, {}},
                                       {.encoding = session::PictureEncoding::Png,
                                        .transform = {view::ViewTransform::Neutral, asked},
                                        .view = of});
