@@ -8,10 +8,10 @@
 namespace tessera::tools {
 
 void FilterOption::add_to(cli::CommandLine& command) {
-    command.option_with_default(
-        "--denoise",
-        "denoise the picture: --denoise uses the recommended filter (fdf); or --denoise=NAME[:key=value,...]",
-        denoise, "fdf");
+    command.option_with_default("--denoise",
+                                std::string("denoise the picture: --denoise uses the recommended filter (") +
+                                    RecommendedFilter + "); or --denoise=NAME[:key=value,...]",
+                                denoise, RecommendedFilter);
     command.option("--filter", "same as --denoise=NAME[:key=value,...]; tessera filters lists the filters",
                    filter);
 }

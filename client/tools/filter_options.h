@@ -8,6 +8,9 @@
 
 namespace tessera::tools {
 
+// Of --denoise without a name, and of live views without an option.
+inline constexpr const char* RecommendedFilter = "fdf";
+
 // --denoise[=NAME] and --filter NAME, which are synonyms, for all commands that write pictures.
 struct FilterOption {
     std::string filter;

@@ -62,6 +62,11 @@ frame::Image image_of(const client::Frame& frame, std::uint32_t width, std::uint
     return image;
 }
 
+// Pictures for the eye are denoised, and light for other programs is as sampled, unless an option asks otherwise.
+bool is_exr(const std::optional<std::string>& output) {
+    return output && picture_format(*output) == PictureFormat::Exr;
+}
+
 // One run of the command: joins the scene, requests the view and shows its frames.
 class Watch {
   public:
@@ -77,7 +82,7 @@ class Watch {
                                 "-o: the file name must end in .exr, .png or .jpg");
         const auto filter = parse_options(options_.filter);
         if (!filter) return report_error(WatchName, cli::ExitUsage, filter.error().what());
-        filter_ = *filter;
+        filter_ = filter->empty() && !is_exr(options_.output) ? RecommendedFilter : *filter;
         const auto display = parse_options(options_.display);
         if (!display) return report_error(WatchName, cli::ExitUsage, display.error().what());
         display_ = *display;
@@ -219,9 +224,11 @@ int run(const WatchOptions& options) {
 
 Command watch_command(cli::CommandLine& program) {
     const auto options = std::make_shared<WatchOptions>();
-    cli::CommandLine& line = program.command(
-        WatchName,
-        "Watch a live scene in the terminal, or in a picture file that is updated with every frame.");
+    cli::CommandLine& line =
+        program.command(WatchName,
+                        "Watch a live scene in the terminal, or in a picture file that is updated with every "
+                        "frame. The picture is denoised, "
+                        "as with --denoise, unless it is an .exr; --denoise=none shows the samples.");
     add_cluster_options(line, options->address);
     line.option("--name", "name of this client, as other members see it", options->name);
     line.option("--scene", "title of the scene, if a new one is opened", options->title);
@@ -240,7 +247,7 @@ Command watch_command(cli::CommandLine& program) {
     line.flag("--no-wait", "exit with 75 if a batch job uses the cluster, instead of waiting",
               options->no_wait);
     line.examples({"tessera watch --master tcp://render-1:7420 --keys ~/.tessera",
-                   "tessera watch --master tcp://127.0.0.1:7420 -o now.png --once --spp 64 --denoise",
+                   "tessera watch --master tcp://127.0.0.1:7420 -o now.png --once --spp 64",
                    "tessera watch --master tcp://127.0.0.1:7420 --view ann/1"});
     return {WatchName, [options](std::string_view) { return run(*options); }};
 }

@@ -3,6 +3,8 @@
 #include <signal.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <random>
 #include <thread>
 
@@ -108,6 +110,26 @@ TEST_F(LiveProcess, FinishedFrameMatchesAnUninterruptedOneBitwise) {
         (void)session->members();  // it has joined again
     }
     EXPECT_EQ(to_hex(finished_film()), to_hex(whole));
+}
+
+TEST_F(LiveProcess, WatchShowsDenoisedPicturesUnlessAskedNotTo) {
+    const auto watched = [&](const std::string& file, const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{
+            "watch", "--master", cluster.endpoint(), "--keys", cluster.keys(),         "--size", "96x64",
+            "--spp", "4",        "--once",           "-o",     cluster.folder() / file};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        ChildProcess watch(cluster.folder().path(), "watch-" + file, "tessera", arguments);
+        EXPECT_EQ(watch.wait(60s).value_or(-1), 0) << watch.err();
+        std::ifstream stream(cluster.folder() / file, std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(stream), {});
+    };
+    const std::string usual = watched("usual.png", {}), denoised = watched("fdf.png", {"--denoise"}),
+                      samples = watched("none.png", {"--denoise=none"});
+    EXPECT_GT(usual.size(), 1000u);
+    EXPECT_EQ(usual, denoised);
+    EXPECT_NE(usual, samples);
+    EXPECT_EQ(watched("usual.exr", {}), watched("none.exr", {"--filter", "none"}))
+        << "light for other programs";
 }
 
 TEST_F(LiveProcess, SamplesMergedBeforeTheCrashAreKept) {

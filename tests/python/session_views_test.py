@@ -62,6 +62,20 @@ class Views(WithMaster):
             other.change(spp=0)
         self.assertEqual(other.wait(samples=1).revision, 3)  # as it was
 
+    def test_pictures_for_the_eye_are_denoised(self):
+        def filter_of(**arguments):
+            view = self.session.open_view(self.POSE, size=(8, 4), **arguments)
+            wanted = self.master.views[max(self.master.views)][0].wanted
+            view.close()
+            return wanted.view.filter
+        self.assertEqual(filter_of(), b"fdf")
+        self.assertEqual(filter_of(picture="jpeg"), b"fdf")
+        self.assertEqual(filter_of(filter="none"), b"none")
+        self.assertEqual(filter_of(filter=""), b"")
+        self.assertEqual(filter_of(picture="planes"), b"")
+        self.assertEqual(filter_of(film=True), b"")
+        self.assertEqual(filter_of(picture="planes", filter="nfor"), b"nfor")
+
     def test_the_camera_of_the_scene(self):
         with self.session.transaction() as edit:
             camera = edit.create("camera", name="main", vertical_fov=1.0)
