@@ -8,8 +8,9 @@
 
 namespace tessera::tools {
 
-// Of --denoise without a name, and of live views without an option.
-inline constexpr const char* RecommendedFilter = "fdf";
+// Of --denoise without a name, and of live views without an option: a history makes all the difference while the camera
+// moves at one sample per pixel.
+inline constexpr const char *RecommendedFilter = "fdf", *LiveFilter = "psvgf";
 
 // --denoise[=NAME] and --filter NAME, which are synonyms, for all commands that write pictures.
 struct FilterOption {

@@ -82,7 +82,7 @@ class Watch {
                                 "-o: the file name must end in .exr, .png or .jpg");
         const auto filter = parse_options(options_.filter);
         if (!filter) return report_error(WatchName, cli::ExitUsage, filter.error().what());
-        filter_ = filter->empty() && !is_exr(options_.output) ? RecommendedFilter : *filter;
+        filter_ = filter->empty() && !is_exr(options_.output) ? LiveFilter : *filter;
         const auto display = parse_options(options_.display);
         if (!display) return report_error(WatchName, cli::ExitUsage, display.error().what());
         display_ = *display;
@@ -227,8 +227,8 @@ Command watch_command(cli::CommandLine& program) {
     cli::CommandLine& line =
         program.command(WatchName,
                         "Watch a live scene in the terminal, or in a picture file that is updated with every "
-                        "frame. The picture is denoised, "
-                        "as with --denoise, unless it is an .exr; --denoise=none shows the samples.");
+                        "frame. The picture is denoised "
+                        "by psvgf unless it is an .exr; --denoise=none shows the samples.");
     add_cluster_options(line, options->address);
     line.option("--name", "name of this client, as other members see it", options->name);
     line.option("--scene", "title of the scene, if a new one is opened", options->title);

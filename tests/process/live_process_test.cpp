@@ -123,7 +123,7 @@ TEST_F(LiveProcess, WatchShowsDenoisedPicturesUnlessAskedNotTo) {
         std::ifstream stream(cluster.folder() / file, std::ios::binary);
         return std::string(std::istreambuf_iterator<char>(stream), {});
     };
-    const std::string usual = watched("usual.png", {}), denoised = watched("fdf.png", {"--denoise"}),
+    const std::string usual = watched("usual.png", {}), denoised = watched("psvgf.png", {"--denoise=psvgf"}),
                       samples = watched("none.png", {"--denoise=none"});
     EXPECT_GT(usual.size(), 1000u);
     EXPECT_EQ(usual, denoised);

@@ -68,8 +68,8 @@ class Views(WithMaster):
             wanted = self.master.views[max(self.master.views)][0].wanted
             view.close()
             return wanted.view.filter
-        self.assertEqual(filter_of(), b"fdf")
-        self.assertEqual(filter_of(picture="jpeg"), b"fdf")
+        self.assertEqual(filter_of(), b"psvgf")
+        self.assertEqual(filter_of(picture="jpeg"), b"psvgf")
         self.assertEqual(filter_of(filter="none"), b"none")
         self.assertEqual(filter_of(filter=""), b"")
         self.assertEqual(filter_of(picture="planes"), b"")

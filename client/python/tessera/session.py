@@ -24,8 +24,7 @@ from .records import (Committed, HistoryEntry, Members, Progress, Status, Writer
 from .scene import Scene
 from .transaction import Transaction
 from .values import Blob, Object
-from .view import (ALL_LAYERS, LAST_FRAME_ONLY, RECOMMENDED_FILTER, VIEW_TRANSFORMS, CameraLike, Rendered, View,
-                   plain_view)
+from .view import ALL_LAYERS, LAST_FRAME_ONLY, LIVE_FILTER, VIEW_TRANSFORMS, CameraLike, Rendered, View, plain_view
 
 Message = Any
 _LOG = logging.getLogger("tessera")
@@ -297,12 +296,12 @@ class Session(SessionNames):
                   budget: float | None = None, exposure: float | None = None, view_transform: str = "neutral") -> View:
         """A view from a camera of the scene (the object or its path) or a Pose (`look_at`). `picture`: "png", "jpeg", "exr",
         "planes" (filtered float32) or "none"; `film`: also deliver the statistics of `channels`. `layers`: a mask, bit i is
-        object layer i; other objects are invisible. `filter`: the denoiser; None: the recommended one for "png" and "jpeg"
+        object layer i; other objects are invisible. `filter`: the denoiser; None: "psvgf" for "png" and "jpeg"
         without `film`, else none. `budget`: time in seconds for samples, filter and encoding
         together. `exposure` of "png" and "jpeg" in EV, None: measured once, on the first
         picture; `view_transform`: "neutral", "agx", "reinhard" or "linear"."""
         if filter is None:
-            filter = RECOMMENDED_FILTER if picture in ("png", "jpeg") and not film else ""
+            filter = LIVE_FILTER if picture in ("png", "jpeg") and not film else ""
         view = plain_view(size, channels=channels, renderer=renderer, bounces=bounces, seed=seed, filter=filter,
                           layers=layers)
         self.aim(view, at)

@@ -22,7 +22,7 @@ CameraLike = camera.Pose | Camera | str
 ALL_LAYERS = 0xFFFFFFFF
 RENDERERS = ("path", "whitted", "raster", "coverage")
 VIEW_TRANSFORMS = ("neutral", "agx", "reinhard", "linear")
-RECOMMENDED_FILTER = "fdf"  # that of `tessera render --denoise`
+LIVE_FILTER = "psvgf"  # that of `tessera watch`
 LAST_FRAME_ONLY = 1  # of the frames of a view, by its number on the wire
 STALL_SECONDS = 5.0  # without further parts of a frame: the rest was lost
 
