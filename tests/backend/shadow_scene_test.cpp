@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/backend/scene_builder.h"
+#include "tests/support/cpu_time.h"
 
 namespace tessera::backend {
 namespace {
@@ -114,6 +115,59 @@ TEST_F(ShadowSceneTest, NamesCamerasAndAttachmentsAreNotRelevant) {
     EXPECT_EQ(delta.relevant, 0u);
     EXPECT_TRUE(delta.geometries.empty());
     EXPECT_EQ(delta.ignored_kinds.size(), 1u);
+}
+
+// Names, cameras and attachments of a large scene, a quarter of the entries each: two updates, a create, a remove.
+struct IrrelevantEdit {
+    static constexpr std::uint64_t Quarter = 25'000, FirstGeometry = 1'000, FirstCamera = 101'000,
+                                   FirstAttachment = 201'000, FirstOld = 301'000;
+
+    static std::vector<scene::Entry> objects() {
+        std::vector<scene::Entry> entries;
+        for (std::uint64_t i = 0; i < Quarter; ++i) {
+            entries.push_back(Create{ObjectId{FirstGeometry + i}, Geometry{}});
+            entries.push_back(Create{ObjectId{FirstCamera + i}, scene::Camera{}});
+            entries.push_back(Create{ObjectId{FirstOld + i}, scene::Attachment{}});
+        }
+        return entries;
+    }
+    static std::vector<scene::Entry> entries() {
+        std::vector<scene::Entry> entries;
+        for (std::uint64_t i = 0; i < Quarter; ++i) {
+            entries.push_back(SceneBuilder::update<Geometry>(ObjectId{FirstGeometry + i}, &Geometry::name,
+                                                             Geometry{.name = "renamed"}));
+            entries.push_back(SceneBuilder::update<scene::Camera>(
+                ObjectId{FirstCamera + i}, &scene::Camera::vertical_fov, {.vertical_fov = 1.0}));
+            entries.push_back(Create{ObjectId{FirstAttachment + i}, scene::Attachment{}});
+            entries.emplace_back(Remove{ObjectId{FirstOld + i}});
+        }
+        return entries;
+    }
+};
+
+TEST_F(ShadowSceneTest, ReadsAHundredThousandIrrelevantEntriesInFiveMilliseconds) {  // T32
+    ASSERT_TRUE(shadow.apply(builder.edit(IrrelevantEdit::objects())));
+    shadow.take_delta();
+    std::vector<scene::Entry> entries = IrrelevantEdit::entries();
+    entries.insert(entries.begin() + 50'000,
+                   SceneBuilder::update<Transform>(Left, &Transform::matrix, transform(moved(5, 0, 0), {})));
+    const scene::ChangeList list = builder.edit(std::move(entries));
+    double shortest = 1e9;
+    for (int repetition = 0; repetition < 7; ++repetition) {
+        ShadowScene copy = shadow;
+        const double start = test::thread_cpu_seconds();
+        ASSERT_TRUE(copy.apply(list, builder.scene()));
+        const SceneDelta delta = copy.take_delta();
+        shortest = std::min(shortest, test::thread_cpu_seconds() - start);
+        EXPECT_EQ(delta.entries, 100'001u);
+        EXPECT_EQ(delta.relevant, 1u);
+        EXPECT_EQ(delta.moved_instances, (std::vector<std::uint32_t>{0}));
+        EXPECT_FALSE(delta.instances_changed);
+        EXPECT_TRUE(delta.geometries.empty());
+        EXPECT_EQ(delta.ignored_kinds.size(), 1u);
+    }
+    RecordProperty("milliseconds", std::to_string(1e3 * shortest));
+    if (!test::IsSanitized) EXPECT_LT(shortest, 0.005);
 }
 
 TEST_F(ShadowSceneTest, AddingAnInstanceChangesTheListButNotTheGeometry) {
