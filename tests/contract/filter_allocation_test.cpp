@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "mediator/filter/choice.h"
 #include "tests/contract/filter_cases.h"
 
 namespace {
@@ -73,6 +74,26 @@ TEST(InputsAllocation, NoneForTheNextFilmOfTheSameSize) {
     resolve_inputs(film, view, nullptr, inputs);
     EXPECT_EQ(noted_bytes, 0u);
     EXPECT_TRUE(inputs.has(frame::Channel::Radiance));
+}
+
+// What a filter keeps and works with, beyond its inputs and the picture it returns. Lardinoije's nine floats are albedo,
+// normal, and value, result and variance of the prefilter; albedo and normal are inputs here.
+TEST(FilterMemory, FdfTakesLessThanNineFloatsPerPixel) {  // LT23
+    constexpr std::uint32_t Size = 400;
+    const Inputs inputs =
+        synthetic_inputs(Size, Size, 2, [](auto x, auto y, auto i) { return room(Size, Size, x, y, i); },
+                         {frame::Channel::Radiance, frame::Channel::Albedo, frame::Channel::Normal,
+                          frame::Channel::Depth, frame::Channel::ShadingFeature});
+    const Choice choice = parse_choice("fdf:blend=off", catalog()).value();  // the thesis' filter
+    Output out;
+    out.picture = Planes(Size, Size, inputs.color_components());
+    tbb::task_arena arena(2);
+    noted_bytes = 0;
+    choice.entry->make(Size, Size)->run(inputs, choice.values, out, {arena, {}});
+    const double bytes = double(noted_bytes) / double(inputs.pixel_count());
+    RecordProperty("bytes_per_pixel", std::to_string(bytes));
+    EXPECT_LE(bytes, 36.0);
+    EXPECT_GE(bytes, 5 * 4.0);  // the planes that it is known to keep are counted
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalog, FilterAllocation, testing::Range<std::size_t>(0, catalog().size()),
