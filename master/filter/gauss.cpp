@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "master/filter/far_holes.h"
 #include "master/filter/kernels.h"
 
 namespace tessera::filter {
@@ -29,7 +30,8 @@ class Gauss final : public Filter {
         PassTimer timer(report, "gauss", 4.0 * (4 * components + 4));
         const bool done =
             for_rows(context, inputs.height, [&](std::uint32_t y) { blur_row(inputs, y, radius); }) &&
-            for_rows(context, inputs.height, [&](std::uint32_t y) { blur_column(out.picture, y, radius); });
+            for_rows(context, inputs.height, [&](std::uint32_t y) { blur_column(out.picture, y, radius); }) &&
+            far_holes_.fill(weights_, out.picture, context);
         report.stopped = !done;
         return report;
     }
@@ -84,6 +86,7 @@ class Gauss final : public Filter {
 
     std::vector<float> kernel_;
     Planes rows_, weights_;
+    FarHoles far_holes_;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "master/filter/convergence_blend.h"
+#include "master/filter/far_holes.h"
 #include "master/filter/kernels.h"
 #include "master/filter/membership.h"
 #include "master/filter/moderated_variance.h"
@@ -65,6 +66,7 @@ class StatMc final : public Filter {
             PassTimer timer(report, "pairs", 4.0 * (15 + PairPlanes));
             shape_pairs(inputs);
             shape(self_, inputs, 1);
+            shape(reached_, inputs, 1);
             done = for_rows(context, inputs.height, [&](std::uint32_t y) { prepare_row(inputs, values, y); });
         }
         if (done) {
@@ -77,7 +79,7 @@ class StatMc final : public Filter {
             done = convergence_blend_.apply(inputs, Channel::Radiance, self_.plane(0), out.picture, context);
             if (done && out.wants_maps) out.maps = {{"blend", convergence_blend_.weights()}};
         }
-        report.stopped = !done;
+        report.stopped = !done || !far_holes_.fill(reached_, out.picture, context);
         return report;
     }
 
@@ -191,6 +193,7 @@ class StatMc final : public Filter {
                 const auto at = static_cast<std::size_t>(x - begin);
                 const float own = pair_row(Count, y)[x] + sums[1][at] / Shell;
                 self_.row(0, y)[x] = sums[0][at] > 0.0f ? std::min(own / sums[0][at], 1.0f) : 0.0f;
+                reached_.row(0, y)[x] = sums[0][at] > 0.0f ? 1.0f : 0.0f;
             }
             for (std::uint32_t c = 0; c < components; ++c) {
                 const float* own = inputs.color(c).data() + std::size_t{y} * inputs.width;
@@ -241,7 +244,8 @@ class StatMc final : public Filter {
     ConvergenceBlend convergence_blend_;
     std::vector<float> pairs_;  // by row, then by Pair
     std::size_t pitch_ = 0;
-    Planes self_;
+    Planes self_, reached_;
+    FarHoles far_holes_;
 };
 
 }  // namespace
