@@ -26,6 +26,7 @@ enum Parameters : std::size_t {
     Steep,
     Levels,
     Order,
+    Kernel,
     R0,
     LightHistory,
     LightTest,
@@ -150,6 +151,7 @@ class Psvgf final : public Filter {
             changes_.lights_or_materials || changes_.geometry ? value(LightTest) : 0.0f;
         settings.levels = static_cast<std::uint32_t>(values[Levels]);
         settings.order = static_cast<LevelOrder>(static_cast<int>(values[Order]));
+        settings.kernel = static_cast<WaveletKernel>(static_cast<int>(values[Kernel]));
         settings.young = value(Young);
         settings.feedback = value(Feedback);
         return settings;
@@ -254,6 +256,7 @@ std::vector<Parameter> psvgf_parameters() {
         {"steep", "of the depth per px", "slope above which depth is ignored", 0.2, 0.0, 1e6, {}},
         {"levels", "", "levels of the wavelet transform", 6, 0, MaxLevels, {}},
         {"order", "", "order of the levels", 0, 0, 2, {"first_then_coarse", "fine", "coarse"}},
+        {"kernel", "", "taps of a level; 5x5 uses at most 6 levels", 0, 0, 1, {"3x3", "5x5"}},
         {"r0", "", "minimum weight of a new sample in the history (E-D3)", 0.1, 0.0, 0.999, {}},
         {"light_history",
          "",

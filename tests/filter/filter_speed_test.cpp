@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "master/filter/catalog.h"
 #include "mediator/filter/choice.h"
@@ -27,20 +28,25 @@ class TimedFrames {
             const double start = test::thread_cpu_seconds();
             const Report report = filter_->run(inputs, choice_.values, out_, {arena_, {}});
             const double now = test::thread_cpu_seconds() - start;
-            double passes = 0.0;
+            if (!warm_) continue;
+            seconds = std::min(seconds, now);
             for (const Pass& pass : report.passes) {
-                if (pass.name.starts_with(passes_)) passes += tessera::seconds(pass.time);
-            }
-            if (warm_) {
-                seconds = std::min(seconds, now);
-                pass_seconds = std::min(pass_seconds, passes);
+                if (!pass.name.starts_with(passes_)) continue;
+                const auto [known, is_new] = shortest_.try_emplace(pass.name, tessera::seconds(pass.time));
+                if (!is_new) known->second = std::min(known->second, tessera::seconds(pass.time));
             }
         }
         warm_ = true;
     }
     double pixels() const { return double(frames_.front().pixel_count()); }
+    // Times of passes are by the clock, so that each of them has its shortest.
+    double pass_seconds() const {
+        double sum = 0.0;
+        for (const auto& [name, time] : shortest_) sum += time;
+        return sum;
+    }
 
-    double seconds = 1e9, pass_seconds = 1e9;  // of a frame
+    double seconds = 1e9;  // of a frame
 
   private:
     Choice choice_;
@@ -49,6 +55,7 @@ class TimedFrames {
     std::string_view passes_;
     tbb::task_arena arena_{1};  // the calling thread
     Output out_;
+    std::map<std::string_view, double> shortest_;  // by pass
     bool warm_ = false;
 };
 
@@ -131,15 +138,15 @@ TEST(PsvgfSpeed, HardlyDependsOnSceneAndCamera) {  // DT28
             subjects.emplace_back("psvgf:blend=off", psvgf_frames(320, 180, camera, 1.0, scene), "wavelet");
         }
     }
-    measure(subjects, 6);
+    measure(subjects, 8);
     for (std::size_t i = 0; i < subjects.size(); ++i) {
         const std::size_t first = i / 3 * 3;  // of the same camera
         EXPECT_NEAR(subjects[i].seconds / subjects[first].seconds, 1.0, 0.2) << i;
         EXPECT_NEAR(subjects[i].seconds / subjects[i % 3].seconds, 1.2, 0.3) << i;
-        EXPECT_NEAR(subjects[i].pass_seconds / subjects[0].pass_seconds, 1.0, 0.25) << i;
+        EXPECT_NEAR(subjects[i].pass_seconds() / subjects[0].pass_seconds(), 1.0, 0.25) << i;
         // On the GPUs of the thesis the wavelet takes 56 to 74 %. Here it is vectorised, lookups at any place of the
         // history are not.
-        EXPECT_GT(subjects[i].pass_seconds, 0.2 * subjects[i].seconds) << i;
+        EXPECT_GT(subjects[i].pass_seconds(), 0.2 * subjects[i].seconds) << i;
     }
 }
 
@@ -152,14 +159,23 @@ TEST(PsvgfSpeed, FillingHolesCostsLessThanTheRest) {  // DT29
     }
     measure(subjects, 6);
     for (const std::size_t full : {0, 2}) {
-        EXPECT_EQ(subjects[full].pass_seconds, 0.0);
-        EXPECT_GT(subjects[full + 1].pass_seconds, 0.0);
-        EXPECT_LT(subjects[full + 1].pass_seconds, 0.6 * subjects[full].seconds);
+        EXPECT_EQ(subjects[full].pass_seconds(), 0.0);
+        EXPECT_GT(subjects[full + 1].pass_seconds(), 0.0);
+        EXPECT_LT(subjects[full + 1].pass_seconds(), 0.6 * subjects[full].seconds);
     }
     // With all that follows from few samples: young pixels take the spatial variance as well. No sample is scattered
     // forward, so that motion does not add to it.
     EXPECT_LT(subjects[1].seconds, 2.0 * subjects[0].seconds);
     EXPECT_LT(subjects[3].seconds, 1.6 * subjects[2].seconds);
+}
+
+TEST(PsvgfSpeed, SixLevelsOf3x3AreFasterThanFiveOf5x5) {  // DT30
+    std::vector<TimedFrames> subjects;
+    for (const char* how : {"psvgf:blend=off", "psvgf:blend=off,kernel=5x5,levels=5,order=fine"}) {
+        subjects.emplace_back(how, psvgf_frames(320, 180, Camera::Moving), "wavelet");
+    }
+    measure(subjects, 6);
+    EXPECT_LT(subjects[0].pass_seconds(), 0.7 * subjects[1].pass_seconds());
 }
 
 TEST(FdfSpeed, IsLinearInThePixels) {  // LT22

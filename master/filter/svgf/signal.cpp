@@ -57,12 +57,17 @@ bool Signal::filter(const Guides& guides, const Settings& settings, bool feedbac
         if (!variance_.run(guides, settings.stops, settings.young, now_, context)) return false;
     }
     filtered_ = &now_.color;
-    for (std::uint32_t pass = 0; pass < settings.levels; ++pass) {
-        const std::uint32_t level = level_of(pass, settings.levels, settings.order);
+    const bool wide = settings.kernel == WaveletKernel::Size5x5;
+    const std::uint32_t levels = wide ? std::min(settings.levels, MaxLevels5x5) : settings.levels;
+    for (std::uint32_t pass = 0; pass < levels; ++pass) {
+        const std::uint32_t level = level_of(pass, levels, settings.order);
         PaddedPlanes& to = levels_[pass % 2];
         {
             PassTimer timer(report, LevelNames[level], AtrousWavelet::BytesPerPixel);
-            if (!wavelet_.run(guides, settings.stops, level, *filtered_, to, context)) return false;
+            if (!(wide ? wavelet_5x5_.run(guides, settings.stops, level, *filtered_, to, context)
+                       : wavelet_.run(guides, settings.stops, level, *filtered_, to, context))) {
+                return false;
+            }
         }
         filtered_ = &to;
         if (pass == 0 && level == 0 && feedback) {

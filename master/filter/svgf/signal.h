@@ -2,16 +2,20 @@
 
 #include "master/filter/svgf/accumulate.h"
 #include "master/filter/svgf/atrous_wavelet.h"
+#include "master/filter/svgf/atrous_wavelet_5x5.h"
 #include "master/filter/svgf/reproject.h"
 #include "master/filter/svgf/spatial_variance.h"
 
 namespace tessera::filter::svgf {
 
+enum class WaveletKernel : std::uint8_t { Size3x3, Size5x5 };
+
 struct Settings {
     EdgeStops stops;
     Accumulation accumulation;
     SurfaceTests tests;
-    std::uint32_t levels = 6;
+    std::uint32_t levels = 6;  // with 5x5 taps at most MaxLevels5x5 are used
+    WaveletKernel kernel = WaveletKernel::Size3x3;
     LevelOrder order = LevelOrder::FirstThenCoarse;
     float young = 4.0f;     // below this count the variance is estimated from the neighbourhood
     float feedback = 8.0f;  // up to this count the first level is fed back into the history; 0: never
@@ -45,6 +49,7 @@ class Signal {
     Planes history_, trust_;
     SpatialVariance variance_;
     AtrousWavelet wavelet_;
+    AtrousWavelet5x5 wavelet_5x5_;
     std::array<PaddedPlanes, 2> levels_;
     const PaddedPlanes* filtered_ = nullptr;
 };
