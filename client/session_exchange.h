@@ -119,10 +119,12 @@ struct Session::Implementation {
                    "version");
     }
 
-    // Returns the master's description of the effect; throws Error{Refused} if it rejects the request.
+    // Returns the master's description of the effect; throws Error{Refused} if it rejects the request, and
+    // Error{Unavailable} if its machine lacks what the request needs.
     template <class Question>
     std::string send_and_confirm(Question question) {
         const auto done = ask<wire::RequestDone>(std::move(question));
+        if (done.unavailable) throw Error(ErrorCode::Unavailable, done.text);
         if (!done.accepted) throw Error(ErrorCode::Refused, done.text);
         return done.text;
     }

@@ -30,7 +30,7 @@ their choices in bash.
 | 3 | the picture was written, but some of its tiles could not be rendered by any node; the message has the command that replays one |
 | 64 | wrong options; the message names the nearest valid one |
 | 65 | `edit`: an error in a script; nothing was changed |
-| 69 | unavailable: no master answers, no nodes came, a back-end cannot start |
+| 69 | unavailable: no master answers, no nodes came, a back-end cannot start, a library that a filter needs is not installed |
 | 70 | internal error; please report it |
 | 74 | the output could not be written |
 | 75 | the cluster is busy and `--no-wait` was given: try again later |

@@ -240,7 +240,10 @@ void SceneSession::handle(SessionRecord& session, const wire::SetViewFilter& req
     try {
         done.text = views_.set_filter(session, request.view, request.filter, now);
     } catch (const Error& error) {
-        done = {.request = request.request, .accepted = false, .text = error.what()};
+        done = {.request = request.request,
+                .accepted = false,
+                .text = error.what(),
+                .unavailable = error.code() == ErrorCode::Unavailable};
     }
     services_.outbox.control(session.control, std::move(done));
 }

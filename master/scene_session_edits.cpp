@@ -259,7 +259,10 @@ void SceneSession::open_view(SessionId id, const wire::RequestView& request, Tim
 
 void SceneSession::view_opened(SessionId id, const wire::RequestView& request, const std::string& problem) {
     const SessionRecord* session = services_.sessions.find(id);
-    if (session && (request.request != 0 || !problem.empty())) done(*session, request.request, problem);
+    if (!session || (request.request == 0 && problem.empty())) return;
+    const bool unavailable = !problem.empty() && problem == why_unavailable(request.wanted.view);
+    services_.outbox.control(session->control,
+                             wire::RequestDone{request.request, problem.empty(), problem, unavailable});
 }
 
 }  // namespace tessera::master

@@ -30,4 +30,18 @@ Expected<std::string> parse_options(const FilterOption& option) {
     return filter::to_text(*choice);
 }
 
+Expected<void> check_available(const std::string& filter) {
+    const auto choice = filter::parse_choice(filter, filter::catalog());
+    if (!choice) return tl::unexpected(choice.error());
+    const std::string why = filter::why_unavailable(*choice->entry);
+    return why.empty() ? Expected<void>() : failure(ErrorCode::Unavailable, why);
+}
+
+Expected<void> check_reproducible(const std::string& filter) {
+    const auto choice = filter::parse_choice(filter, filter::catalog());
+    if (!choice) return tl::unexpected(choice.error());
+    const std::string why = filter::why_not_reproducible(*choice->entry);
+    return why.empty() ? Expected<void>() : failure(ErrorCode::InvalidInput, "--reproducible: " + why);
+}
+
 }  // namespace tessera::tools

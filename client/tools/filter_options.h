@@ -23,4 +23,10 @@ struct FilterOption {
 // The filter and its parameters in the format of View::filter; "" without either option.
 Expected<std::string> parse_options(const FilterOption& option);
 
+// The filter, in the format of View::filter, runs in this process. Unavailable: what is missing on this machine.
+Expected<void> check_available(const std::string& filter);
+
+// InvalidInput if a reproducible frame cannot have the filter.
+Expected<void> check_reproducible(const std::string& filter);
+
 }  // namespace tessera::tools

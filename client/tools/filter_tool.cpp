@@ -45,12 +45,18 @@ std::string range_text(const filter::Parameter& parameter) {
     return text;
 }
 
-void print_table(const filter::Description& filter) {
+void print_table(const filter::FilterEntry& entry) {
+    const filter::Description& filter = entry.description;
     std::cout << filter.name << "  " << filter.summary << (filter.source.empty() ? "" : " (") << filter.source
               << (filter.source.empty() ? "" : ")") << "\n    "
               << (filter.consistent ? "consistent: its error converges to 0 with the samples" : "biased")
-              << (filter.temporal ? "; temporal: keeps a history" : "") << "\n    reads "
+              << (filter.temporal ? "; temporal: keeps a history" : "")
+              << (filter.reproducible ? "" : "; not for --reproducible") << "\n    reads "
               << channels_text(filter.channels(filter::default_values(filter))) << "\n";
+    if (entry.why_unavailable != nullptr) {
+        const std::string why = entry.why_unavailable();
+        std::cout << "    " << (why.empty() ? "available on this machine" : "unavailable: " + why) << "\n";
+    }
     for (const filter::Parameter& parameter : filter.parameters) {
         std::string head = "    " + std::string(parameter.name) + "=" + standard_text(parameter);
         if (!parameter.unit.empty()) head += " " + std::string(parameter.unit);
@@ -69,7 +75,9 @@ void print_channels() {
     }
 }
 
-Json as_json(const filter::Description& filter) {
+Json as_json(const filter::FilterEntry& filter_entry) {
+    const filter::Description& filter = filter_entry.description;
+    const std::string why_unavailable = filter::why_unavailable(filter_entry);
     Json parameters = Json::array();
     for (const filter::Parameter& parameter : filter.parameters) {
         Json entry{{"name", parameter.name}, {"unit", parameter.unit}, {"meaning", parameter.meaning}};
@@ -89,6 +97,9 @@ Json as_json(const filter::Description& filter) {
             {"source", filter.source},
             {"consistent", filter.consistent},
             {"temporal", filter.temporal},
+            {"reproducible", filter.reproducible},
+            {"available", why_unavailable.empty()},
+            {"why_unavailable", why_unavailable},
             {"path_class", name(filter.path_class)},
             {"channels", channels_text(filter.channels(filter::default_values(filter)))},
             {"parameters", parameters}};
@@ -147,6 +158,8 @@ int run_filter(const FilterOptions& options) {
     const auto choice = filter::parse_choice(options.filter, filter::catalog());
     if (!choice) return wrong(std::string("--filter: ") + choice.error().what() + "; see tessera filters");
     for (const std::string& hint : choice->hints) std::cerr << "tessera: " << hint << "\n";
+    if (const std::string why = filter::why_unavailable(*choice->entry); !why.empty())
+        return report_error("filter", cli::ExitUnavailable, why);
     if (!picture_format(options.output)) return wrong("-o: the file name must end in .exr, .png or .jpg");
     const auto display = parse_options(options.display);
     if (!display) return wrong(display.error().what());
@@ -231,9 +244,9 @@ Command filters_command(cli::CommandLine& program) {
                 Json all = Json::array();
                 for (const filter::FilterEntry& entry : filter::catalog()) {
                     if (*json) {
-                        all.push_back(as_json(entry.description));
+                        all.push_back(as_json(entry));
                     } else {
-                        print_table(entry.description);
+                        print_table(entry);
                     }
                 }
                 *json ? void(std::cout << all.dump(2) << "\n") : print_channels();

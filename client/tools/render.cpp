@@ -266,7 +266,10 @@ class Render {
 int run(const RenderOptions& options) {
     const char* name = options.coverage ? "coverage" : "render";
     auto plan = parse_options(options);
-    if (!plan) return report_error(name, cli::ExitUsage, plan.error().what());
+    if (!plan) {
+        const bool unavailable = plan.error().code() == ErrorCode::Unavailable;
+        return report_error(name, unavailable ? cli::ExitUnavailable : cli::ExitUsage, plan.error().what());
+    }
     try {
         return Render(std::move(*plan), options).run();
     } catch (const Error& error) {

@@ -134,6 +134,12 @@ Expected<void> set_filter(const RenderOptions& options, session::ViewRequest& jo
     if (!filter) return tl::unexpected(filter.error());
     job.view.filter = *filter;
     if (filter->empty()) return {};
+    if (options.reproducible) {
+        if (auto fine = check_reproducible(*filter); !fine) return fine;
+    }
+    if (!options.master) {  // otherwise the master answers for its machine
+        if (auto fine = check_available(*filter); !fine) return fine;
+    }
     if (options.detach) return {};  // see set_detached()
     job.film = any_exr(options.outputs);
     const PictureFormat format = *picture_format(options.outputs.front());

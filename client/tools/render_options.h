@@ -59,6 +59,7 @@ struct RenderPlan {
     std::optional<SampleGrid> coverage;              // the view is enlarged by it
     std::optional<picture::CustomView> custom_view;  // of --ocio
 };
+// InvalidInput: wrong options; Unavailable: right ones, of a filter that this machine cannot run.
 Expected<RenderPlan> parse_options(const RenderOptions& options);
 
 }  // namespace tessera::tools

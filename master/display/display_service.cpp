@@ -29,9 +29,8 @@ std::string first_problem(const display::Display& display) {
     if (const auto found = display::problems(display); !found.empty())
         return found.front() +
                (found.size() > 1 ? " (and " + std::to_string(found.size() - 1) + " more)" : "");
-    if (const auto choice = filter::parse_choice(display.filter, filter::catalog()); !choice)
-        return choice.error().what();
-    return {};
+    const auto choice = filter::parse_choice(display.filter, filter::catalog());
+    return choice ? filter::why_unavailable(*choice->entry) : std::string(choice.error().what());
 }
 
 }  // namespace

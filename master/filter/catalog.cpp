@@ -10,6 +10,7 @@
 #include "master/filter/nfor.h"
 #include "master/filter/nlm.h"
 #include "master/filter/none.h"
+#include "master/filter/oidn.h"
 #include "master/filter/pixel.h"
 #include "master/filter/psvgf.h"
 #include "master/filter/statmc.h"
@@ -19,7 +20,7 @@ namespace tessera::filter {
 std::span<const FilterEntry> catalog() {
     static const std::array Table{
         none_entry(), pixel_entry(), fdf_entry(),    psvgf_entry(),  gauss_entry(), bilateral_entry(),
-        eaw_entry(),  nlm_entry(),   guided_entry(), statmc_entry(), nfor_entry(),
+        eaw_entry(),  nlm_entry(),   guided_entry(), statmc_entry(), nfor_entry(),  oidn_entry(),
     };
     return Table;
 }

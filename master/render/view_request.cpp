@@ -79,6 +79,10 @@ std::string problem_of(const session::ViewRequest& request) {
     if (request.tile != 0 && request.tile < SmallestTile) return "tiles must be at least 8 pixels wide";
     const auto filter = filter::parse_choice(view.filter, filter::catalog());
     if (!filter) return filter.error().what();
+    if (request.reproducible) {
+        if (std::string why = filter::why_not_reproducible(*filter->entry); !why.empty()) return why;
+    }
+    if (std::string why = filter::why_unavailable(*filter->entry); !why.empty()) return why;
     const bool has_picture = request.picture != session::PictureEncoding::None;
     if (request.frames == session::Frames::Last && !has_picture && !request.film) {
         return "neither a picture nor the film is requested: request one of them";
@@ -93,6 +97,11 @@ std::string problem_of(const session::ViewRequest& request) {
     if (stop.time_limit < Duration::zero()) return "the time limit is negative";
     if (request.wait_limit < Duration::zero()) return "the time to wait for nodes is negative";
     return {};
+}
+
+std::string why_unavailable(const view::View& view) {
+    const auto filter = filter::parse_choice(view.filter, filter::catalog());
+    return filter ? filter::why_unavailable(*filter->entry) : std::string();
 }
 
 void complete(view::View& view) {

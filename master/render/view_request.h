@@ -16,6 +16,9 @@ inline std::uint64_t film_bytes(const view::View& completed) {
 std::string problem_of(const session::ViewRequest& request);
 std::string problem_of(const view::DisplayTransform& transform);
 
+// Why this machine cannot run the view's filter, with the remedy; "" if it can. Part of problem_of().
+std::string why_unavailable(const view::View& view);
+
 // Adds what the view's filter needs: channels, and the path class where the filter is made for one.
 void complete(view::View& view);
 

@@ -209,7 +209,12 @@ std::string Views::set_filter(const SessionRecord& asker, const std::string& nam
     const auto refuse = [](const std::string& why) { throw Error(ErrorCode::Refused, why); };
     const auto choice = filter::parse_choice(filter, filter::catalog());
     if (!choice) refuse(choice.error().what());
+    if (const std::string why = filter::why_unavailable(*choice->entry); !why.empty())
+        throw Error(ErrorCode::Unavailable, why);
     ViewState& view = view_to_filter(asker, name);
+    if (view.request.reproducible) {
+        if (const std::string why = filter::why_not_reproducible(*choice->entry); !why.empty()) refuse(why);
+    }
     if (view.request.picture == session::PictureEncoding::None) {
         refuse(
             "the frame's client requested only the film: nothing would be filtered; start it with "

@@ -120,6 +120,16 @@ frame::ChannelSet wanted_channels(const Choice& choice, frame::ChannelSet there)
     return wanted;
 }
 
+std::string why_unavailable(const FilterEntry& entry) {
+    return entry.why_unavailable == nullptr ? std::string() : entry.why_unavailable();
+}
+
+std::string why_not_reproducible(const FilterEntry& entry) {
+    if (entry.description.reproducible) return {};
+    return "filter '" + std::string(entry.description.name) +
+           "' does not give the same bits on every machine: choose another filter for a reproducible frame";
+}
+
 std::string to_text(const Choice& choice) {
     const Description& filter = choice.entry->description;
     std::string text;

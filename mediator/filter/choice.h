@@ -27,6 +27,12 @@ frame::ChannelSet missing_channels(const Choice& choice, frame::ChannelSet there
 // The same, and channels without which the filter overestimates errors.
 frame::ChannelSet wanted_channels(const Choice& choice, frame::ChannelSet there);
 
+// Why this machine cannot run the filter, with the remedy; "" if it can.
+std::string why_unavailable(const FilterEntry& entry);
+
+// Why it cannot be used for a reproducible frame; "" if it can.
+std::string why_not_reproducible(const FilterEntry& entry);
+
 // The shortest text that parses to the same: default values are left out.
 std::string to_text(const Choice& choice);
 

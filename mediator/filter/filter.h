@@ -35,6 +35,8 @@ struct Description {
     bool reads_variances = false;
     // Keeps a history between runs: reset() drops it.
     bool temporal = false;
+    // The same samples give the same bits on every machine.
+    bool reproducible = true;
     // The paths for HighVariance, if it reads that channel.
     view::PathClass path_class = view::PathClass::Indirect;
 };
@@ -80,6 +82,8 @@ class Filter {
 struct FilterEntry {
     Description description;
     std::unique_ptr<Filter> (*make)(std::uint32_t width, std::uint32_t height);
+    // Why it cannot run on this machine, with the remedy; "" if it can. Null: it runs on every machine.
+    std::string (*why_unavailable)() = nullptr;
 };
 
 }  // namespace tessera::filter

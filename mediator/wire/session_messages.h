@@ -50,10 +50,12 @@ struct SceneJoined {
 struct RequestDone {
     std::uint64_t request = 0;
     bool accepted = false;
-    std::string text;  // error, or additional information
+    std::string text;          // error, or additional information
+    bool unavailable = false;  // not accepted, since the master's machine lacks what it needs
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "request", &RequestDone::request),
-                          row(2, "accepted", &RequestDone::accepted), row(3, "text", &RequestDone::text));
+                          row(2, "accepted", &RequestDone::accepted), row(3, "text", &RequestDone::text),
+                          row(4, "unavailable", &RequestDone::unavailable));
     }
 };
 // Closes the scene and its views; the next client in the queue is admitted.

@@ -154,6 +154,14 @@ TEST_F(SessionViewsTest, RefusedViewIsAnError) {
     expect_error(rendered, ErrorCode::Refused);
 }
 
+TEST_F(SessionViewsTest, WhatTheMastersMachineLacksIsUnavailable) {
+    const auto session = joined();
+    auto rendered = in_background([&] { return render(*session, small_view(), {}, {}); });
+    const auto request = master_.expect<wire::RequestView>();
+    master_.send(wire::RequestDone{request.request, false, "no library", true});
+    expect_error(rendered, ErrorCode::Unavailable);
+}
+
 // Outside of the window, duplicate position, too few pixels, count differs from the header.
 TEST_F(SessionViewsTest, InconsistentTilesAreAnError) {
     const std::vector<std::vector<wire::FrameTile>> attacks{

@@ -83,6 +83,7 @@ double leak(const Planes& picture, const Edge& edge) {
 TEST_P(FilterQuality, LightStaysOnItsSideOfAnEdge) {
     if (is_one_of({"gauss"})) GTEST_SKIP() << "sees no edges, by its definition";
     for (const Edge& edge : edges()) {
+        if (edge.what == "depth" && is_one_of({"oidn"})) continue;  // the stand-in sees albedo and normals
         const Inputs inputs = synthetic_inputs(EdgeSize, EdgeSize, 16, edge.sampler);
         Subject subject(entry(), inputs);
         EXPECT_LE(leak(subject.picture(inputs), edge), 0.1) << name() << " at an edge of " << edge.what;

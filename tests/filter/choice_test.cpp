@@ -50,7 +50,7 @@ TEST(FilterChoice, ColorIsEnoughWithoutAFilter) {
 TEST(FilterChoice, FiltersThatReadVariancesWantTheirBlocks) {
     using enum frame::Channel;
     const frame::ChannelSet most = frame::ChannelSet::all() - frame::ChannelSet{BlockVariance};
-    for (const char* name : {"fdf", "nfor", "nlm", "pixel", "psvgf", "statmc"}) {
+    for (const char* name : {"fdf", "nfor", "nlm", "oidn", "pixel", "psvgf", "statmc"}) {
         const Choice choice = *parse_choice(name, catalog());
         EXPECT_TRUE(missing_channels(choice, most).empty()) << name;
         EXPECT_EQ(wanted_channels(choice, most), frame::ChannelSet{BlockVariance}) << name;

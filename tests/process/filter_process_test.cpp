@@ -4,6 +4,7 @@
 #include "master/filter/catalog.h"
 #include "mediator/picture/exr_reader.h"
 #include "tests/process/real_cluster.h"
+#include "tests/support/environment.h"
 
 namespace tessera::test {
 namespace {
@@ -20,8 +21,9 @@ std::vector<std::string> path_class_of(const std::string& filter) {
     return {};
 }
 
-// The cluster is started once for all filters.
+// The cluster is started once for all filters. All programs find the stand-in for a library that is optional.
 RealCluster& cluster() {
+    static const EnvironmentVariable libraries("LD_LIBRARY_PATH", library_path(open_image_denoise()));
     static RealCluster cluster;
     static const ChildProcess a = cluster.start_node("a"), b = cluster.start_node("b");
     return cluster;

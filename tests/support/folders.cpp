@@ -15,4 +15,8 @@ std::filesystem::path python_package() {
     return std::filesystem::path(BUILD_FOLDER) / "python";
 }
 
+std::filesystem::path open_image_denoise(const std::string& stand_in) {
+    return std::filesystem::path(BUILD_FOLDER) / "tests" / stand_in;
+}
+
 }  // namespace tessera::test

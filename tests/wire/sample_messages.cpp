@@ -130,7 +130,7 @@ std::vector<ControlMessage> scene_messages() {
             SceneRefused{{5, 1}, "too large"},
             JoinScene{"room", "ann", 0xfedcba9876543210, true, true},
             SceneJoined{{5, 1}, 65536, 100, 3, "room", "ann (2)", 2},
-            RequestDone{1, true, "why"},
+            RequestDone{1, true, "why", true},
             CloseScene{2},
             ReadScene{3, {5, 1}},
             SceneContent{4, some_changes(), {blake2b({}), 5}},

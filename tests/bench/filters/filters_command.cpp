@@ -21,6 +21,7 @@ int run_filters(const BenchOptions& options) {
     const Interrupts interrupts;  // before anything that starts threads
     const auto plan = parse_options(options, filter::catalog());
     if (!plan) return report_error(FiltersName, cli::ExitUsage, plan.error().what());
+    for (const std::string& text : plan->left_out) std::cerr << "tessera bench: " << text << "\n";
     BenchFiles files(plan->output);  // reports an unwritable folder before the measurements
     std::optional<BenchResults> results;
     {

@@ -41,8 +41,10 @@ std::vector<std::uint64_t> up_to(const std::vector<std::uint64_t>& spp, std::uin
     return kept;
 }
 
+// All filters that this machine can run, or the named ones.
 Expected<std::vector<filter::Choice>> choose_filters(const std::string& text,
-                                                     std::span<const filter::FilterEntry> table) {
+                                                     std::span<const filter::FilterEntry> table,
+                                                     std::vector<std::string>& left_out) {
     std::vector<filter::Choice> filters{*filter::parse_choice("none", table)};
     std::vector<std::string> names = split_filters(text);
     if (text.empty()) {
@@ -51,6 +53,11 @@ Expected<std::vector<filter::Choice>> choose_filters(const std::string& text,
     for (const std::string& name : names) {
         auto choice = filter::parse_choice(name, table);
         if (!choice) return wrong("--filters", choice.error().what());
+        if (const std::string why = filter::why_unavailable(*choice->entry); !why.empty()) {
+            if (!text.empty()) return wrong("--filters", why);
+            left_out.push_back(name + " is left out: " + why);
+            continue;
+        }
         const bool is_there = std::any_of(filters.begin(), filters.end(), [&](const filter::Choice& other) {
             return to_text(other) == to_text(*choice);
         });
@@ -89,7 +96,7 @@ Expected<BenchPlan> parse_options(const BenchOptions& options, std::span<const f
     auto scenes = choose_scenes(options.scenes, plan.assets);
     if (!scenes) return wrong("--scenes", scenes.error().what());
     plan.scenes = std::move(*scenes);
-    auto filters = choose_filters(options.filters, table);
+    auto filters = choose_filters(options.filters, table, plan.left_out);
     if (!filters) return tl::unexpected(filters.error());
     plan.filters = std::move(*filters);
 

@@ -34,6 +34,7 @@ struct BenchPlan {
     std::filesystem::path output, references, assets;
     std::vector<std::string> scenes;
     std::vector<filter::Choice> filters;  // the first is `none`, which all are compared with
+    std::vector<std::string> left_out;    // for the user: filters that this machine cannot run, and why
     std::vector<SizePlan> sizes;          // of one scene, small first
     std::vector<std::uint64_t> path_spp;  // samples per view of the camera path; empty: no path
     std::uint32_t path_views = 16;

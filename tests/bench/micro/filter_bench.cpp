@@ -47,6 +47,10 @@ void run(benchmark::State& state, const std::string& text) {
         state.SkipWithError(choice.error().what());
         return;
     }
+    if (const std::string why = why_unavailable(*choice->entry); !why.empty()) {
+        state.SkipWithError(why.c_str());
+        return;
+    }
     const auto filter = choice->entry->make(Width, Height);
     tbb::task_arena arena;
     Output out;
@@ -75,7 +79,15 @@ int main(int count, char** arguments) {
     benchmark::Initialize(&count, arguments);
     std::vector<std::string> choices(arguments + 1, arguments + count);
     if (choices.empty()) {
-        for (const FilterEntry& entry : catalog()) choices.emplace_back(entry.description.name);
+        for (const FilterEntry& entry : catalog()) {
+            const std::string why = why_unavailable(entry);
+            if (why.empty()) {
+                choices.emplace_back(entry.description.name);
+            } else {
+                std::fprintf(stderr, "%s is left out: %s\n", std::string(entry.description.name).c_str(),
+                             why.c_str());
+            }
+        }
     }
     benchmark::RegisterBenchmark("plain_copy", plain_copy)->Unit(benchmark::kMillisecond)->UseRealTime();
     for (const std::string& choice : choices) {
