@@ -115,7 +115,25 @@ TEST(BenchPlan, ParsesFilterLists) {
     EXPECT_EQ(to_text(plan->filters[2]), "gauss");
     EXPECT_EQ(plan->sizes.front().spp, (std::vector<std::uint64_t>{4, 16}));
     options.filters.clear();
-    EXPECT_EQ(parse_options(options, filter::catalog())->filters.size(), filter::catalog().size());
+    const auto all = parse_options(options, filter::catalog());
+    EXPECT_EQ(all->filters.size() + all->left_out.size(), filter::catalog().size());
+}
+
+TEST(BenchPlan, LeavesOutFiltersThatThisMachineCannotRun) {
+    std::vector<filter::FilterEntry> table(filter::catalog().begin(), filter::catalog().end());
+    table.resize(3);
+    table[2].why_unavailable = [] { return std::string("it needs a library"); };
+    const std::string name(table[2].description.name);
+    BenchOptions options;
+    options.scenes = "cornell";
+    const auto all = parse_options(options, table);
+    ASSERT_TRUE(all) << all.error().what();
+    EXPECT_EQ(all->filters.size(), 2u);
+    EXPECT_EQ(all->left_out, std::vector<std::string>{name + " is left out: it needs a library"});
+    options.filters = name;
+    const auto named = parse_options(options, table);
+    ASSERT_FALSE(named);
+    EXPECT_EQ(std::string(named.error().what()), "--filters: it needs a library");
 }
 
 TEST(BenchPlan, ErrorsNameTheOption) {

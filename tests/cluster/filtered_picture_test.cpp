@@ -137,6 +137,32 @@ TEST(PictureRequest, OfColorAloneKeepsNoSecondMoments) {
     EXPECT_TRUE(render(1, request).film()->channels.contains(frame::Channel::Radiance));
 }
 
+// Neither from the start nor later.
+TEST(PictureRequest, AReproducibleFrameHasNoFilterWithOtherBitsElsewhere) {
+    LoopbackCluster cluster;
+    cluster.add_node("null", {}, 5us);
+    auto blobs = std::make_shared<scene::BlobStore>();
+    const auto session = cluster.batch(blobs), other = cluster.session(blobs);
+    session::ViewRequest request = picture_request("oidn");
+    request.reproducible = true;
+    EXPECT_THROW((void)client::render(*session, request, {}, {}), Error);
+    request.view.filter = "gauss";
+    request.stop.spp = 64;
+    std::string refusal;
+    const auto meddle = [&](const session::ViewProgress& progress) {
+        if (progress.phase != session::Phase::Rendering || progress.samples == 0 || !refusal.empty()) return;
+        refusal = "none";
+        try {
+            (void)other->set_filter("", "oidn");
+        } catch (const Error& error) {
+            refusal = error.what();
+        }
+    };
+    const client::ViewResult result = client::render(*session, request, meddle, {});
+    EXPECT_NE(refusal.find("filter 'oidn' does not give the same bits"), std::string::npos) << refusal;
+    EXPECT_EQ(result.summary.picture.filter, "gauss");
+}
+
 // The clock decides how many samples there are; every pixel has at least the two that a variance takes.
 TEST(PictureRequest, WithABudgetEveryPixelHasTwoSamples) {
     session::ViewRequest request = picture_request("gauss");

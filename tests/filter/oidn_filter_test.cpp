@@ -111,7 +111,9 @@ TEST(OidnFilter, FollowsTheSizeOfTheInputs) {
     }
 }
 
+// A network does not quite keep what is constant.
 TEST(OidnFilter, AlphaIsExactWhereItDoesNotVary) {
+    const EnvironmentVariable dim("TESSERA_OIDN_FAILS", "dim");
     const Inputs inputs = checker_inputs();
     const Output out = run_filter("oidn:blend=off", inputs);
     bool filtered = false;
@@ -120,8 +122,10 @@ TEST(OidnFilter, AlphaIsExactWhereItDoesNotVary) {
             const float alpha = out.picture.row(3, y)[x];
             if (x < 20 || x > 25) {
                 ASSERT_EQ(alpha, x < 20 ? 1.0f : 0.0f) << x << " " << y;
+            } else {
+                ASSERT_LE(alpha, 0.99f) << x << " " << y;
             }
-            filtered = filtered || alpha != inputs.color(3)[x + y * CheckerWidth];
+            filtered = filtered || (alpha > 0.0f && alpha < 0.99f);
         }
     }
     EXPECT_TRUE(filtered) << "covered edges have no noise";

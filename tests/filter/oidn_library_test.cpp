@@ -69,6 +69,17 @@ TEST(OidnLibrary, ProblemsAreNamed) {
                    "it creates no device for this CPU: unsupported device type: CPU");
 }
 
+TEST(OidnLibrary, AnExecutionIsCancelled) {
+    std::vector<float> color(3 * 8 * 4, 0.5f), albedo = color, normal = color, output = color;
+    RayTracingFilter filter(shared_device(2));
+    filter.set({color, albedo, normal, output}, 8, 4);
+    std::stop_source stop;
+    EXPECT_TRUE(filter.execute(stop.get_token()));
+    stop.request_stop();
+    EXPECT_FALSE(filter.execute(stop.get_token()));
+    EXPECT_TRUE(filter.execute({})) << "the error of the one before is not its own";
+}
+
 TEST(OidnLibrary, FiltersShareADeviceForAsManyThreads) {
     const auto two = shared_device(2);
     EXPECT_EQ(two, shared_device(2));

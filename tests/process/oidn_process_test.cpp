@@ -144,6 +144,9 @@ TEST_F(OidnCommand, AMasterWithoutTheLibraryRefusesTheView) {
     const int code = refused.wait(std::chrono::minutes(2)).value_or(-1);
     expect_unavailable({code, refused.out(), refused.err()},
                        "libOpenImageDenoise.so.2 cannot be used there: it lacks the function");
+    expect_unavailable(
+        run({"set-filter", "oidn", "--master", cluster->endpoint(), "--keys", cluster->keys()}),
+        "libOpenImageDenoise.so.2 cannot be used there");
     EXPECT_TRUE(cluster->master().running());
     const json other = cluster->render("other", scene_file("room-1.glb"), options);
     EXPECT_TRUE(other.contains("film_hash")) << other.dump(1);
