@@ -46,6 +46,11 @@ void fail(int code, const char* message) {
     first_message = message;
 }
 
+std::nullptr_t no_object(int code, const char* message) {
+    fail(code, message);
+    return nullptr;
+}
+
 constexpr int Unknown = 1, InvalidArgument = 2, InvalidOperation = 3, OutOfMemory = 4, Unsupported = 5,
               Cancelled = 6;
 
@@ -93,8 +98,8 @@ bool alike(const Filter& f, std::size_t a, std::size_t b) {
 }  // namespace
 
 EXPORTED void* oidnNewDevice(int type) {
-    if (type != 1) return fail(InvalidArgument, "only the CPU can read the memory of its caller"), nullptr;
-    if (fails("device")) return fail(Unsupported, "unsupported device type: CPU"), nullptr;
+    if (type != 1) return no_object(InvalidArgument, "only the CPU can read the memory of its caller");
+    if (fails("device")) return no_object(Unsupported, "unsupported device type: CPU");
     return new Device;
 }
 
@@ -127,9 +132,9 @@ EXPORTED void oidnCommitDevice(void* device) {
 
 EXPORTED void* oidnNewFilter(void* device, const char* type) {
     Device& d = *static_cast<Device*>(device);
-    if (fails("filter")) return fail(OutOfMemory, "out of memory"), nullptr;
-    if (!d.committed) return fail(InvalidOperation, "changes to the device are not committed"), nullptr;
-    if (std::strcmp(type, "RT") != 0) return fail(InvalidArgument, "unknown filter type"), nullptr;
+    if (fails("filter")) return no_object(OutOfMemory, "out of memory");
+    if (!d.committed) return no_object(InvalidOperation, "changes to the device are not committed");
+    if (std::strcmp(type, "RT") != 0) return no_object(InvalidArgument, "unknown filter type");
     return new Filter{.device = &d};
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "master/filter/oidn/library.h"
 #include "mediator/picture/exr_reader.h"

@@ -1,10 +1,10 @@
 // A filter that needs a library which the master's machine lacks, or that fails there.
 #include <gtest/gtest.h>
 
-#include "master/filter/catalog.h"
+#include <algorithm>
+
 #include "master/render/reconstruction.h"
 #include "master/render/view_request.h"
-#include "mediator/filter/choice.h"
 #include "tests/support/environment.h"
 
 namespace tessera::master {
