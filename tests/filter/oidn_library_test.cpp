@@ -64,9 +64,12 @@ TEST(OidnLibrary, ProblemsAreNamed) {
                    "libOpenImageDenoise.so.2 cannot be used there: it lacks the function oidnExecuteFilter");
     expect_problem({in("oidn-3", "libOpenImageDenoise.so")}, "it is version 3.0.0, not 1 or 2");
     expect_problem({(test::source_folder() / "LICENSE").string()}, "LICENSE cannot be used there");
-    const EnvironmentVariable fails("TESSERA_OIDN_FAILS", "device");
-    expect_problem({in("oidn", "libOpenImageDenoise.so.2")},
-                   "it creates no device for this CPU: unsupported device type: CPU");
+    for (const auto& [fails, reason] :
+         {std::pair("device", "unsupported device type: CPU"), {"commit device", "the device is lost"}}) {
+        const EnvironmentVariable failing("TESSERA_OIDN_FAILS", fails);
+        expect_problem({in("oidn", "libOpenImageDenoise.so.2")},
+                       std::string("it creates no device for this CPU: ") + reason);
+    }
 }
 
 TEST(OidnLibrary, AnExecutionIsCancelled) {

@@ -66,19 +66,29 @@ std::string find_all(void* library, Functions& call) {
     return symbols.missing();
 }
 
-std::string device_problem(const Functions& call) {
+// Why there is no device: of this handle, or that none was created if it is null. "" if there is one.
+std::string device_problem(const Functions& call, void* device) {
     const char* message = nullptr;
-    const int code = call.get_device_error(nullptr, &message);
+    const int code = call.get_device_error(device, &message);
+    if (device != nullptr && code == NoError) return {};
     return "it creates no device for this CPU: " +
            (code != NoError && message != nullptr ? std::string(message) : "no reason is given");
+}
+
+// A device that could not be committed is not released: some versions then wait for what it does not have.
+void start_device(const Functions& call, void* device, int threads) {
+    call.set_device_int(device, "numThreads", threads);
+    call.commit_device(device);
 }
 
 // Why the library cannot be used; "" and its version if it can. A device is created, since a master would otherwise
 // accept views whose first picture fails.
 std::string problem_of(const Functions& call, int& version) {
     void* const device = call.new_device(DeviceTypeCpu);
-    if (device == nullptr) return device_problem(call);
+    if (device == nullptr) return device_problem(call, nullptr);
+    start_device(call, device, 1);
     version = call.get_device_int(device, "version");
+    if (std::string problem = device_problem(call, device); !problem.empty()) return problem;
     call.release_device(device);
     const int major = version / 10000;
     return major == 1 || major == 2 ? std::string() : "it is version " + text_of(version) + ", not 1 or 2";
@@ -131,15 +141,10 @@ Expected<const Library*> installed_library() {
 Device::Device(const Library& library, int threads)
     : call_(library.call), handle_(call_.new_device(DeviceTypeCpu)) {
     if (handle_ == nullptr)
-        throw Error(ErrorCode::Unavailable, library.name + " cannot be used: " + device_problem(call_));
-    try {
-        call_.set_device_int(handle_, "numThreads", threads);
-        call_.commit_device(handle_);
-        check("start its device");
-    } catch (...) {
-        call_.release_device(handle_);
-        throw;
-    }
+        throw Error(ErrorCode::Unavailable,
+                    library.name + " cannot be used: " + device_problem(call_, nullptr));
+    start_device(call_, handle_, threads);
+    check("start its device");
 }
 
 Device::~Device() {
