@@ -84,29 +84,42 @@ TEST(NforFit, AcceptsDuplicateFeatures) {
     EXPECT_LT(f.worst(), 1e-4f);
 }
 
-// The prediction at the centre, relative to its colour, and the weighted mean of the window.
-TEST(NforFit, IsTheWeightedMeanWhereNoiseExplainsAll) {
-    for (const bool equal_features : {false, true}) {
-        Fitting f;
+// The mean over the window of the squared difference between the model and the weighted mean of the colours.
+double explained(Fitting& f, std::size_t lane) {
+    const nfor::Fit model = f.fit();
+    double sum = 0.0, weight = 0.0, squares = 0.0;
+    for (const nfor::Tap& tap : f.taps) {
+        const double w = f.weights[static_cast<std::size_t>(&tap - f.taps.data()) * PackSize + lane];
+        const auto at = Fitting::Centre + static_cast<std::ptrdiff_t>(lane);
+        weight += w;
+        sum += w * (f.color(0)[at + tap.offset] - f.color(0)[at]);
+    }
+    for (const nfor::Tap& tap : f.taps) {
+        const double d = model.at(f.window(), tap)[0][lane] - sum / weight;
+        squares += d * d;
+    }
+    return squares / static_cast<double>(f.taps.size());
+}
+
+// Colours of noise alone: the fit follows it less when it knows of the noise.
+TEST(NforFit, ShrinksToTheMeanWhereNoiseExplainsAll) {
+    Fitting exact, noisy;
+    for (std::size_t i = 0; i < Fitting::Plane; ++i) noisy.noise()[i] = 0.3f;  // of uniform numbers: 3 / 12
+    for (std::size_t lane = 0; lane < PackSize; ++lane)
+        EXPECT_LT(explained(noisy, lane), 0.8 * explained(exact, lane));
+}
+
+// Noise that is overestimated by far must not hide what a feature explains.
+TEST(NforFit, KeepsTextureWhereTheNoiseIsOverestimated) {
+    Fitting exact, noisy;
+    for (Fitting* f : {&exact, &noisy}) {
         for (std::size_t i = 0; i < Fitting::Plane; ++i) {
-            f.noise()[i] = 0.3f;  // three times the variance of a uniform number, and a little
-            for (std::size_t k = 0; equal_features && k < nfor::FeatureCount; ++k) f.feature(k)[i] = 0.7f;
-        }
-        const nfor::Fit model = f.fit();
-        for (std::size_t lane = 0; lane < PackSize; ++lane) {
-            double sum = 0.0, weight = 0.0;
-            for (std::size_t t = 0; t < f.taps.size(); ++t) {
-                const double w = f.weights[t * PackSize + lane];
-                weight += w;
-                sum += w * f.color(0)[Fitting::Centre + static_cast<std::ptrdiff_t>(lane) + f.taps[t].offset];
-            }
-            const double mean = sum / weight;
-            for (const nfor::Tap& tap : f.taps) {
-                const float own = f.color(0)[Fitting::Centre + static_cast<std::ptrdiff_t>(lane)];
-                EXPECT_NEAR(model.at(f.window(), tap)[0][lane] + own, mean, 1e-3);
-            }
+            for (std::size_t c = 0; c < nfor::Colors; ++c) f->color(c)[i] = 2.0f * f->feature(0)[i];
+            f->noise()[i] = f == &noisy ? 2.0f : 0.0f;  // twice the variance of the colours, 3 x 4 / 12
         }
     }
+    for (std::size_t lane = 0; lane < PackSize; ++lane)
+        EXPECT_GT(explained(noisy, lane), 0.4 * explained(exact, lane));
 }
 
 TEST(NforFit, EqualFeaturesChangeNothing) {

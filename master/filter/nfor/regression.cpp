@@ -1,5 +1,7 @@
 #include "master/filter/nfor/regression.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace tessera::filter::nfor {
@@ -89,9 +91,13 @@ Pack ridge(const Sums& sums, Pack per_weight) {
         const Pack mean = sums.color[c] * per_weight;
         spread -= min(mean * mean, all(Largest));
     }
+    spread = max(spread, all(0.0f));
     const Pack noise = min(sums.noise * per_weight, all(Largest));
-    const Pack signal = max(spread - noise, all(Tiny));
-    const Pack wanted = all(static_cast<float>(Variables)) * noise / (max(count, all(1.0f)) * signal);
+    Pack uncertainty;
+    for (std::size_t lane = 0; lane < PackSize; ++lane)
+        uncertainty[lane] = std::sqrt(2.0f / std::max(count[lane], 1.0f));
+    const Pack signal = max(max(spread - noise, all(0.0f)) + uncertainty * spread, all(Tiny));
+    const Pack wanted = noise / (max(count, all(1.0f)) * signal);
     return all(Rounding) + min(wanted, all(MaxRidge));
 }
 

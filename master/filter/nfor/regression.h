@@ -34,13 +34,16 @@ struct Window {
 // by normal equations of differences to p, whose rounding is relative to the window's own spread. With C the
 // weighted covariance of the variables the ridge is
 //
-//     (C + diag(r (C_ii + f) + r_0 M_ii)) b = cov(v, c)      r = r_0 + (Variables / N) S / (T - S)
+//     (C + diag(r (C_ii + f) + r_0 M_ii)) b = cov(v, c)      r = r_0 + S / (N (max(0, T - S) + sqrt(2 / N) T))
 //
 // N = (sum w)^2 / sum w^2 the effective number of pixels, T the weighted variance of the colours, S the part
-// explained by noise. This is Hoerl and Kennard's ridge (number of coefficients times noise over N times the
-// squared coefficients) for standardised variables, whose squared coefficients add up to the signal T - S: a
-// window fully explained by noise gets the zero-order mean. C_ii is the difference of the second moment M_ii
-// around p and a square, so its rounding is relative to M_ii: r_0 = 1e-5 is ten times the rounding of sums of
+// explained by noise. This is Hoerl and Kennard's ridge (1970), noise over N times the largest squared
+// coefficient of standardised variables, which is at most the signal T - S. The signal gets its standard error,
+// sqrt(2 / N) T for normal numbers, on top: S is an estimate, and often above T where the light is found rarely.
+// Without it such windows were their mean and lost all texture: relMSE without the blend was 1.2 times as high
+// (geometric mean over cornell, grids, caustics, studio-1 and room-1, 4 to 256 samples).
+//
+// C_ii is the difference of the second moment M_ii around p and a square, so its rounding is relative to M_ii: r_0 = 1e-5 is ten times the rounding of sums of
 // some hundred floats, and the matrix stays positive definite. f = 1e-6: features that vary by less than
 // 0.001 carry little information in noise. With features all equal, C and b are 0.
 class Fit {
