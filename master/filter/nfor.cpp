@@ -1,10 +1,13 @@
 #include "master/filter/nfor.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "master/filter/convergence_blend.h"
 #include "master/filter/moderated_variance.h"
 #include "master/filter/nfor/selection.h"
+#include "master/filter/nfor/self_weight.h"
 #include "master/filter/svgf/hole_fill.h"
 
 namespace tessera::filter {
@@ -17,6 +20,7 @@ using namespace nfor;
 enum Parameters : std::size_t { Radius, Patch, Stride, Pooled, UseConvergenceBlend };
 
 constexpr std::uint32_t PoolRadius = 3;
+constexpr std::uint32_t RefinementPatch = 1;  // of the second pass: less noise needs no larger patch
 
 class Nfor final : public Filter {
   public:
@@ -66,20 +70,32 @@ class Nfor final : public Filter {
                 return false;
             }
         }
+        const bool has_halves = !inputs.halves[0].empty();
+        if (has_halves) {
+            PassTimer timer(report, "second regression", 4.0 * (3 * Colors + FeatureCount + 8));
+            if (!refine(inputs, settings, out.picture, context)) return false;
+        }
         if (out.wants_maps) out.maps = {{"bandwidth", selection_.first()}};
         if (values[UseConvergenceBlend] == 0.0) return true;
         PassTimer timer(report, "convergence blend",
                         ConvergenceBlend::bytes_per_pixel(out.picture.components()));
-        if (!convergence_blend_.apply(inputs, Channel::Radiance, {}, out.picture, context)) return false;
+        std::span<const float> own;
+        if (has_halves) {
+            if (!self_weight_.run(inputs, colors_, scale_, refined_.plane(Colors - 1), out.picture, context))
+                return false;
+            own = self_weight_.weights();
+        }
+        if (!convergence_blend_.apply(inputs, Channel::Radiance, own, out.picture, context)) return false;
         if (out.wants_maps) out.maps.push_back({"blend", convergence_blend_.weights()});
         return true;
     }
 
     Half half(std::size_t h) const {
-        return {{colors_[h].plane(0), colors_[h].plane(1), colors_[h].plane(2), alpha_.plane(0)},
-                colors_[h],
-                variances_[h],
-                counts_[h]};
+        return {
+            {colors_[h].plane(0), colors_[h].plane(1), colors_[h].plane(2), alpha_.plane(0), alpha_.plane(0)},
+            colors_[h],
+            variances_[h],
+            counts_[h]};
     }
 
     // Copies of the halves with holes filled, so that differences to a hole are finite and small. Pixels
@@ -127,14 +143,63 @@ class Nfor final : public Filter {
         return holes_.run(inputs.counts, one_object_, views_, context);
     }
 
+    // The second pass: a fit to the mean of both filtered halves. Their difference shows the noise that is left.
+    // It is filtered along, summed over r, g, b, for the self weight.
+    bool refine(const Inputs& inputs, CollaborativeSettings settings, Planes& picture, RunContext& context) {
+        settings.window.patch = std::min(settings.window.patch, RefinementPatch);
+        const std::uint32_t width = inputs.width;
+        shape(light_, inputs, 3);
+        shape(last_, inputs, 2);
+        shape(known_, inputs, 1);
+        const bool gathered = for_rows(context, inputs.height, [&](std::uint32_t y) {
+            const float* counts = inputs.counts.row(0, y);
+            float* known = known_.row(0, y);
+            for (std::uint32_t x = 0; x < width; ++x) known[x] = std::min(counts[x], 1.0f);
+            float *alpha = last_.row(0, y), *sum = last_.row(1, y);
+            std::fill_n(alpha, width, 1.0f);
+            if (picture.components() > 3) std::copy_n(picture.row(3, y), width, alpha);
+            std::fill_n(sum, width, 0.0f);
+            for (std::uint32_t c = 0; c < 3; ++c) {
+                std::copy_n(picture.row(c, y), width, light_.row(c, y));
+                const float* difference = difference_.row(c, y);
+                for (std::uint32_t x = 0; x < width; ++x) sum[x] += difference[x];
+            }
+        });
+        const Half whole{{light_.plane(0), light_.plane(1), light_.plane(2), last_.plane(0), last_.plane(1)},
+                         light_,
+                         difference_,
+                         known_,
+                         true};
+        if (!gathered ||
+            !collaborative_.run(whole, whole, features_, settings, std::span(&refined_, 1), context)) {
+            return false;
+        }
+        return for_rows(context, inputs.height, [&](std::uint32_t y) {
+            for (std::uint32_t c = 0; c < picture.components(); ++c) {
+                const float most = c == 3 ? 1.0f : std::numeric_limits<float>::max();
+                const float* from = refined_.row(c, y);
+                float* to = picture.row(c, y);
+                for (std::uint32_t x = 0; x < width; ++x) to[x] = std::clamp(from[x], 0.0f, most);
+            }
+        });
+    }
+
     // The linear model may predict values outside the valid range: light >= 0, alpha within [0, 1].
     bool combine(const Inputs& inputs, Planes& picture, RunContext& context) {
+        shape(difference_, inputs, 3);
+        shape(scale_, inputs, 1);
         return for_rows(context, inputs.height, [&](std::uint32_t y) {
             const float* first = selection_.first().row(0, y);
             const float* counts[2] = {counts_[0].row(0, y), counts_[1].row(0, y)};
+            float* scale = scale_.row(0, y);
+            for (std::uint32_t x = 0; x < inputs.width; ++x) {
+                const float all = counts[0][x] + counts[1][x];
+                scale[x] = all > 0.0f ? std::sqrt(counts[0][x] / all * (counts[1][x] / all)) : 0.5f;
+            }
             for (std::uint32_t c = 0; c < picture.components(); ++c) {
                 const float most = c == 3 ? 1.0f : std::numeric_limits<float>::max();
                 float* to = picture.row(c, y);
+                float* difference = c < 3 ? difference_.row(c, y) : nullptr;
                 const auto of = [&](std::size_t h, std::uint32_t x) {
                     const float narrow = filtered_[h][0].row(c, y)[x], wide = filtered_[h][1].row(c, y)[x];
                     return wide + first[x] * (narrow - wide);
@@ -143,7 +208,9 @@ class Nfor final : public Filter {
                     const float all = counts[0][x] + counts[1][x];
                     const float weight = all > 0.0f ? counts[0][x] / all : 0.5f;
                     const float odd = of(1, x);
-                    to[x] = std::clamp(odd + weight * (of(0, x) - odd), 0.0f, most);
+                    const float change = of(0, x) - odd;
+                    to[x] = std::clamp(odd + weight * change, 0.0f, most);
+                    if (difference) difference[x] = std::clamp(scale[x] * change, -1e15f, 1e15f);
                 }
             }
         });
@@ -153,6 +220,7 @@ class Nfor final : public Filter {
     Regressors features_;
     Collaborative collaborative_;
     Selection selection_;
+    SelfWeight self_weight_;
     ConvergenceBlend convergence_blend_;
     svgf::HoleFill holes_;
     std::vector<std::uint32_t> one_object_;
@@ -160,6 +228,9 @@ class Nfor final : public Filter {
     Planes alpha_;
     std::array<Planes, 2> colors_, variances_, counts_;
     std::array<std::array<Planes, 2>, 2> filtered_;  // by half, then bandwidth
+    Planes scale_;                                   // sqrt(n_A n_B) / n
+    Planes difference_;                              // of the filtered halves, times scale_
+    Planes light_, last_, known_, refined_;          // of the second pass
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "master/filter/nfor/regression.h"
 #include "master/filter/nfor/selection.h"
+#include "master/filter/nfor/self_weight.h"
 #include "mediator/base/random.h"
 #include "tests/filter/synthetic.h"
 
@@ -251,6 +252,183 @@ TEST(NforSelection, ComparesErrorsOfTheMeanOfBothHalves) {
     double narrow = 0.0;
     for (const float v : selection.first().values()) narrow += v / double(Size * Size);
     EXPECT_GT(narrow, 0.6);
+}
+
+// Noise of one normal number per column of 32, which neighbours share exactly, or one per pixel.
+struct CorrelatedGuide {
+    static constexpr std::uint32_t Width = 64, Height = 32;
+    explicit CorrelatedGuide(bool shared) {
+        std::mt19937 random(9);
+        std::normal_distribution<float> noise;
+        for (std::uint32_t y = 0; y < Height; ++y) {
+            for (std::uint32_t x = 0; x < Width; ++x) {
+                const bool first = shared && x % 32 != 0;
+                values.row(0, y)[x] = first ? values.row(0, y)[x - 1] : 5.0f + noise(random);
+                halves.row(0, y)[x] = first ? halves.row(0, y)[x - 1] : noise(random);
+            }
+        }
+        std::ranges::fill(known.values(), 1.0f);
+    }
+    // Of the pixels of the first tile to those two columns to the right, the mean.
+    double distance() {
+        nfor::PatchDistance patches;
+        patches.reserve({.radius = 2, .patch = 1}, 1);
+        const Tile tile{0, 0, Tiles::Width, Tiles::Height};
+        patches.load({values, halves, known, true}, tile);
+        std::vector<float> to(std::size_t{Tiles::Width} * Tiles::Height);
+        patches.compute(2, 0, 1, to.data());
+        double sum = 0.0;
+        for (std::size_t i = 0; i < to.size(); ++i) {
+            if (i % Tiles::Width >= 4 && i % Tiles::Width < 26) sum += to[i] / (22.0 * Tiles::Height);
+        }
+        return sum;
+    }
+    Planes values{Width, Height, 1}, halves{Width, Height, 1}, known{Width, Height, 1};
+};
+
+TEST(NforPatchDistance, NoiseThatNeighboursShareHidesNoStep) {
+    CorrelatedGuide equal(true), stepped(true), single(false);
+    EXPECT_LT(equal.distance(), 1e-6);
+    EXPECT_LT(single.distance(), 1.0);
+    for (std::uint32_t y = 0; y < CorrelatedGuide::Height; ++y) {
+        for (std::uint32_t x = 0; x < CorrelatedGuide::Width; ++x) {
+            stepped.values.row(0, y)[x] += 0.1f * static_cast<float>(x);
+            single.values.row(0, y)[x] += 0.1f * static_cast<float>(x);
+        }
+    }
+    EXPECT_GT(stepped.distance(), 100.0);  // a fifth of the standard deviation, but none of it differs
+    EXPECT_LT(single.distance(), 1.5);
+}
+
+// F = T + a (U - T), for halves of nA and nB samples of variance 1.
+struct Halves {
+    static constexpr std::uint32_t Size = 48;
+    Halves(float a, float n_a, float n_b) {
+        inputs.width = inputs.height = Size;
+        std::mt19937 random(11);
+        std::normal_distribution<float> noise;
+        for (std::size_t i = 0; i < std::size_t{Size} * Size; ++i) {
+            scale.values()[i] = std::sqrt(n_a * n_b) / (n_a + n_b);
+            for (std::uint32_t c = 0; c < 3; ++c) {
+                const float da = noise(random) / std::sqrt(n_a), db = noise(random) / std::sqrt(n_b);
+                colors[0].plane(c)[i] = 10.0f + da;
+                colors[1].plane(c)[i] = 10.0f + db;
+                change[i] += scale.values()[i] * a * (da - db);
+                filtered.plane(c)[i] = 10.0f + a * (n_a * da + n_b * db) / (n_a + n_b);
+            }
+        }
+    }
+    std::vector<float> weights() {
+        tbb::task_arena arena(2);
+        RunContext context{arena, {}};
+        nfor::SelfWeight weight;
+        EXPECT_TRUE(weight.run(inputs, colors, scale, change, filtered, context));
+        return {weight.weights().begin(), weight.weights().end()};
+    }
+    Inputs inputs;
+    std::array<Planes, 2> colors{Planes(Size, Size, 3), Planes(Size, Size, 3)};
+    Planes scale{Size, Size, 1}, filtered{Size, Size, 3};
+    std::vector<float> change = std::vector<float>(std::size_t{Size} * Size, 0.0f);
+};
+
+TEST(NforSelfWeight, IsTheWeightOfThePixelsOwnNoise) {
+    for (const float a : {0.0f, 0.2f, 0.8f, 1.0f}) {
+        for (const auto& [n_a, n_b] : {std::pair{8.0f, 8.0f}, {2.0f, 1.0f}, {1.0f, 64.0f}}) {
+            for (const float w : Halves(a, n_a, n_b).weights()) ASSERT_NEAR(w, a, 1e-3f) << n_a << " " << n_b;
+        }
+    }
+}
+
+// Noise of F that has nothing to do with that of the pixel is no weight of its own.
+TEST(NforSelfWeight, NoiseOfOthersDoesNotCount) {
+    Halves halves(0.0f, 8.0f, 8.0f);
+    std::mt19937 random(13);
+    std::normal_distribution<float> noise;
+    for (float& change : halves.change) change = noise(random);
+    double mean = 0.0;
+    for (const float w : halves.weights()) mean += w / (48.0 * 48.0);
+    EXPECT_LT(mean, 0.1);
+}
+
+TEST(NforSelfWeight, EqualOrHugeHalvesGiveAFiniteWeight) {
+    Halves black(0.0f, 1.0f, 1.0f), huge(0.5f, 8.0f, 8.0f);
+    for (Planes& planes : black.colors) std::ranges::fill(planes.values(), 0.0f);
+    std::ranges::fill(black.filtered.values(), 0.0f);
+    for (const float w : black.weights()) EXPECT_EQ(w, 0.0f);
+    huge.colors[0].values()[1000] = 1e30f;
+    for (const float w : huge.weights()) EXPECT_TRUE(w >= 0.0f && w <= 1.0f);
+}
+
+// Of light and shade with uniform noise, `count(x, y)` samples a pixel.
+Inputs shaded(std::uint64_t count, bool uneven) {
+    const auto sample = [](auto x, auto y, auto i) { return curved_surface(x, y, i, 1.0); };
+    Inputs inputs = synthetic_inputs(64, 48, count, sample);
+    if (!uneven) return inputs;
+    // Every other column has samples of a film with more of them.
+    const Inputs more = synthetic_inputs(64, 48, 4 * count + 1, sample);
+    const auto mix_in = [](Planes& to, const Planes& from) {
+        for (std::size_t i = 0; i < to.values().size(); i += 2) to.values()[i] = from.values()[i];
+    };
+    mix_in(inputs.counts, more.counts);
+    for (std::size_t i = 0; i < inputs.means.size(); ++i) mix_in(inputs.means[i], more.means[i]);
+    for (std::size_t i = 0; i < inputs.variances.size(); ++i) mix_in(inputs.variances[i], more.variances[i]);
+    for (std::size_t h = 0; h < 2; ++h) {
+        mix_in(inputs.halves[h], more.halves[h]);
+        mix_in(inputs.half_counts[h], more.half_counts[h]);
+    }
+    return inputs;
+}
+
+TEST(Nfor, LowersTheErrorOfFewAndOfUnevenSamples) {
+    const Inputs exact =
+        synthetic_inputs(64, 48, 1, [](auto x, auto y, auto) { return curved_surface(x, y, 0, 0.0); });
+    const Planes& truth = exact.mean(frame::Channel::Radiance);
+    for (const std::uint64_t n : {1, 2, 3, 5, 16}) {
+        for (const bool uneven : {false, true}) {
+            const Inputs inputs = shaded(n, uneven);
+            const double unfiltered = mean_squared_error(inputs.mean(frame::Channel::Radiance), truth);
+            EXPECT_LT(mean_squared_error(run_filter("nfor", inputs).picture, truth), 0.3 * unfiltered)
+                << n << uneven;
+        }
+    }
+}
+
+// Patches that contain a bright edge are similar to few others, so that the first pass keeps the noise next to it.
+TEST(Nfor, TheSecondPassRemovesNoiseNextToABrightWindow) {
+    const Inputs inputs = synthetic_inputs(64, 48, 16, [](auto x, auto y, auto i) {
+        CounterRandom random(mix(21), mix((std::uint64_t{y} << 32 | x) ^ mix(i)));
+        const bool window = x >= 24 && x < 40 && y >= 16 && y < 32;
+        SyntheticSample s;
+        s.high.fill(static_cast<float>((window ? 200.0 : 1.0) * 2.0 * random.uniform()));
+        return s;
+    });
+    const Planes picture = run_filter("nfor:blend=off", inputs).picture;
+    const Planes& unfiltered = inputs.mean(frame::Channel::Radiance);
+    double error = 0.0, before = 0.0;
+    for (std::uint32_t y = 16; y < 32; ++y) {
+        for (const std::uint32_t x : {21u, 22u, 41u, 42u}) {
+            error += std::pow(picture.row(0, y)[x] - 1.0, 2);
+            before += std::pow(unfiltered.row(0, y)[x] - 1.0, 2);
+        }
+    }
+    EXPECT_LT(error / before, 0.1);  // the first pass alone: 2
+}
+
+TEST(Nfor, ABlackPictureStaysBlackAndOneBrightPixelStaysInItsWindow) {
+    const auto lit = [](float dark, float bright, std::uint64_t n) {
+        return synthetic_inputs(64, 48, n, [=](auto x, auto y, auto) {
+            SyntheticSample s;
+            s.high.fill(x == 32 && y == 24 ? bright : dark);
+            return s;
+        });
+    };
+    for (const std::uint64_t n : {1, 2, 3, 16}) {
+        const Planes black = run_filter("nfor", lit(0.0f, 0.0f, n)).picture;
+        for (std::size_t i = 0; i < 3 * black.pixel_count(); ++i) ASSERT_EQ(black.values()[i], 0.0f);
+        const Planes picture = run_filter("nfor", lit(1e-3f, 1e6f, n)).picture;
+        EXPECT_NEAR(picture.row(0, 0)[0], 1e-3f, 1e-5f) << n;
+        for (const float v : picture.values()) ASSERT_TRUE(std::isfinite(v) && v >= 0.0f) << n;
+    }
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ enum : std::size_t {
     Feature,
     Color = Feature + FeatureCount,
     Noise = Color + Colors,
-    Samples,
+    Samples = Noise + 3,
     Known,
     Sum,
     Count = Sum + Colors + 1
@@ -82,10 +82,11 @@ void Collaborative::prepare_taps(const Layout& layout) {
 }
 
 bool Collaborative::run(const Half& half, const Half& other, const Regressors& features,
-                        const CollaborativeSettings& settings, std::array<Planes, 2>& out,
-                        RunContext& context) {
+                        const CollaborativeSettings& settings, std::span<Planes> out, RunContext& context) {
+    bandwidth_count_ = out.size();
+    correlated_ = half.correlated;
     const std::uint32_t width = half.counts.width(), height = half.counts.height();
-    for (std::size_t k = 0; k < Bandwidths.size(); ++k) {
+    for (std::size_t k = 0; k < bandwidth_count_; ++k) {
         for (const auto& [planes, components] : {std::pair{&sums_[k], Colors + 1}, {&out[k], Colors}}) {
             if (planes->width() == width && planes->height() == height && !planes->empty()) continue;
             *planes = Planes(width, height, static_cast<std::uint32_t>(components));
@@ -111,7 +112,7 @@ bool Collaborative::run(const Half& half, const Half& other, const Regressors& f
         });
     }
     return done && for_rows(context, height, [&](std::uint32_t y) {
-               for (std::size_t k = 0; k < Bandwidths.size(); ++k) {
+               for (std::size_t k = 0; k < bandwidth_count_; ++k) {
                    const float* weight = sums_[k].row(0, y);
                    for (std::uint32_t c = 0; c < Colors; ++c) {
                        const float* sum = sums_[k].row(c + 1, y);
@@ -130,10 +131,10 @@ bool Collaborative::run(const Half& half, const Half& other, const Regressors& f
 void Collaborative::run_tile(const Tile& tile, const Layout& layout, const Half& half, const Half& other,
                              const Regressors& features, Slot& slot) {
     gather(tile, layout, half, features, slot);
-    slot.distance.load({other.color, other.variance, other.counts}, tile);
+    slot.distance.load({other.color, other.variance, other.counts, other.correlated}, tile);
     measure(tile, layout, slot);
     float* sums = slot.window.data() + Sum * layout.plane;
-    for (std::size_t k = 0; k < Bandwidths.size(); ++k) {
+    for (std::size_t k = 0; k < bandwidth_count_; ++k) {
         std::fill_n(sums, (Colors + 1) * layout.plane, 0.0f);
         for (std::size_t row = 0; row * layout.stride < tile.height; ++row) {
             for (std::size_t pack = 0; pack * PackSize * layout.stride < tile.width; ++pack) {
@@ -164,9 +165,14 @@ void Collaborative::gather(const Tile& tile, const Layout& layout, const Half& h
     for (std::size_t c = 0; c < Colors; ++c) {
         copy(Color + c, [from = half.colors[c]](std::size_t i) { return from[i]; });
     }
-    copy(Noise, [&](std::size_t i) {
-        return half.variance.plane(0)[i] + half.variance.plane(1)[i] + half.variance.plane(2)[i];
-    });
+    if (half.correlated) {
+        for (std::uint32_t c = 0; c < 3; ++c)
+            copy(Noise + c, [from = half.variance.plane(c)](std::size_t i) { return from[i]; });
+    } else {
+        copy(Noise, [&](std::size_t i) {
+            return half.variance.plane(0)[i] + half.variance.plane(1)[i] + half.variance.plane(2)[i];
+        });
+    }
     copy(Samples, [from = half.counts.plane(0)](std::size_t i) { return from[i]; });
     copy(Known, [from = half.counts.plane(0)](std::size_t i) { return from[i] > 0.0f ? 1.0f : 0.0f; });
 }
@@ -195,14 +201,19 @@ void Collaborative::predict(const Tile& tile, const Layout& layout, std::size_t 
     const std::size_t centre =
         layout.index_of(row * layout.stride + layout.margin, layout.margin) + pack * PackSize;
     const float* at = slot.window.data() + centre;
-    const Window window{taps_, at + Feature * layout.plane, at + Color * layout.plane,
-                        at + Noise * layout.plane, layout.plane};
+    const Window window{taps_,
+                        at + Feature * layout.plane,
+                        at + Color * layout.plane,
+                        at + Noise * layout.plane,
+                        layout.plane,
+                        correlated_};
     const float* nearness = slot.weights.data() + (row * layout.packs + pack) * taps * PackSize;
     float* similar_weights = slot.bandwidth.data();
+    const bool narrow = k == 0 && bandwidth_count_ == Bandwidths.size();
     float* fitting = similar_weights + taps * PackSize;
     for (std::size_t t = 0; t < taps; ++t) {
         Pack w = load(nearness + t * PackSize);
-        if (k == 0) w = (w * w) * (w * w);  // to the power of 1 / 0.5^2
+        if (narrow) w = (w * w) * (w * w);  // to the power of 1 / 0.5^2
         store(similar_weights + t * PackSize, w);
         store(fitting + t * PackSize, w * load(at + Samples * layout.plane + taps_[t].offset));
     }

@@ -9,10 +9,12 @@ inline constexpr std::array<float, 2> Bandwidths{0.5f, 1.0f};
 
 // One half of the samples, whose light is regressed with weights from the other half.
 struct Half {
-    std::array<std::span<const float>, Colors> colors;  // holes filled; alpha, or any value, last
-    const Planes& color;                                // r, g, b: compared by the patches of this half
-    const Planes& variance;                             // of the means of this half
-    const Planes& counts;                               // samples in it
+    std::array<std::span<const float>, Colors>
+        colors;               // holes filled; after r, g, b alpha and one more, or any values
+    const Planes& color;      // r, g, b: compared by the patches of this half
+    const Planes& variance;   // of the means of this half
+    const Planes& counts;     // samples in it
+    bool correlated = false;  // neighbours share noise: `variance` as in Guide
 };
 
 struct CollaborativeSettings {
@@ -27,9 +29,9 @@ struct CollaborativeSettings {
 // tiles sum in a fixed order.
 class Collaborative {
   public:
-    // `out[k]` for Bandwidths[k] gets Colors components. False: stopped.
+    // One of `out` for each of the last Bandwidths gets Colors components. False: stopped.
     bool run(const Half& half, const Half& other, const Regressors& features,
-             const CollaborativeSettings& settings, std::array<Planes, 2>& out, RunContext& context);
+             const CollaborativeSettings& settings, std::span<Planes> out, RunContext& context);
 
   private:
     struct Slot {
@@ -51,6 +53,8 @@ class Collaborative {
 
     PerThread<Slot> slots_;
     std::vector<Tap> taps_;
+    std::size_t bandwidth_count_ = 0;
+    bool correlated_ = false;
     std::array<Planes, 2> sums_;  // weight, then predictions less the pixel's own colours
 };
 

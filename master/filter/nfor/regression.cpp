@@ -47,7 +47,7 @@ void sum_colors(const Window& window, const float* weights, Sums& sums) {
         const Pack w = load(weights + t * PackSize);
         weight += w;
         squared += w * w;
-        noise += w * load(window.noise + tap.offset);
+        if (!window.correlated) noise += w * load(window.noise + tap.offset);
         for (std::size_t c = 0; c < Colors; ++c) {
             const Pack y = color(window, tap, c);
             color_sum[c] += w * y;
@@ -59,6 +59,24 @@ void sum_colors(const Window& window, const float* weights, Sums& sums) {
     sums.noise = noise;
     sums.square = square;
     sums.color = color_sum;
+}
+
+// The weighted variance of the half differences, times the weight.
+Pack correlated_noise(const Window& window, const float* weights, Pack weight) {
+    Pack noise{};
+    for (std::size_t c = 0; c < 3; ++c) {
+        const float* at = window.noise + c * window.plane;
+        Pack sum{}, squares{};
+        for (std::size_t t = 0; t < window.taps.size(); ++t) {
+            const Pack w = load(weights + t * PackSize);
+            const Pack e = load(at + window.taps[t].offset) - load(at);
+            sum += w * e;
+            squares += w * min(e * e, all(Largest));
+        }
+        const Pack mean = sum / max(weight, all(Tiny));
+        noise += max(squares - weight * min(mean * mean, all(Largest)), all(0.0f));
+    }
+    return noise;
 }
 
 // Row I of the normal equations: few enough sums to stay in registers.
@@ -106,6 +124,7 @@ Pack ridge(const Sums& sums, Pack per_weight) {
 void Fit::solve(const Window& window, const float* weights) {
     Sums sums;
     sum_colors(window, weights, sums);
+    if (window.correlated) sums.noise = correlated_noise(window, weights, sums.weight);
     sum_rows(window, weights, sums, std::make_index_sequence<Variables>{});
     known_ = sums.weight > all(Tiny) ? all(1.0f) : all(0.0f);
     const Pack per_weight = known_ / max(sums.weight, all(Tiny));

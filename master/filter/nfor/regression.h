@@ -9,8 +9,9 @@
 
 namespace tessera::filter::nfor {
 
-// The variables of the first-order model: x, y in the picture and the features. Four colours are regressed.
-inline constexpr std::size_t Variables = 2 + FeatureCount, Colors = 4;
+// The variables of the first-order model: x, y in the picture and the features. Five colours are regressed: r, g, b,
+// alpha and one more, which have the fit's weights.
+inline constexpr std::size_t Variables = 2 + FeatureCount, Colors = 5;
 
 // One pixel of a window, seen from eight neighbouring centres.
 struct Tap {
@@ -23,8 +24,11 @@ struct Window {
     std::span<const Tap> taps;
     const float* features;  // FeatureCount planes, at the centres
     const float* colors;    // Colors planes
-    const float* noise;     // variance of the colours, summed over r, g, b
+    const float* noise;     // variance of the colours, summed over r, g, b; see `correlated`
     std::size_t plane;
+    // Neighbours share noise: `noise` is three planes of half differences of r, g, b (see Guide), whose variance in the
+    // window is the part of the colours' variance due to noise.
+    bool correlated = false;
 };
 
 // A weighted first-order fit of colours around each of eight pixels p,
