@@ -106,8 +106,9 @@ struct ViewState {
     bool awaiting_first_frame() const {
         return shows_all() && problem.empty() && !passes.empty() && (!shown || shown->revision != revision);
     }
-    // Its client waited for the end, which is decided: it is not rendered again unless the client asks for it.
-    bool has_ended() const { return !shows_all() && run.outcome.has_value(); }
+    // Its client waited for the end, which is decided: it is not rendered again unless the client asks for it. Once asked
+    // for it follows the scene, although the outcome is known until the restart.
+    bool has_ended() const { return !shows_all() && !restart_wanted && run.outcome.has_value(); }
     bool is_complete() const { return shown && shown->complete && shown->revision == revision; }
 };
 

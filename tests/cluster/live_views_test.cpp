@@ -169,6 +169,24 @@ TEST_F(LiveViews, PicturesContinueWhileTheSceneIsEdited) {
     EXPECT_GE(versions.size(), 10u);
 }
 
+// The restart waits, since an edit is to be published as soon as another view has its first picture.
+TEST_F(LiveViews, AnEndedViewThatIsRequestedAgainFollowsTheScene) {
+    cluster.add_node("null", {}, 100us);
+    session::ViewRequest still = view_of(32, 24, 1);
+    still.min_nodes = 1;
+    still.wait_limit = 60s;
+    still.film = true;
+    const auto first_end = client::render(*ann, still, {}, {}, client::Session::AfterEnd::Keep);
+    ASSERT_EQ(first_end.summary.outcome, session::Outcome::Complete);
+    ann->request_view(1, view_of(640, 480, 1u << 20));  // its first picture takes half a second
+    ann->submit_ahead({paint({2, 0, 0})});
+    const auto end = client::render(*ann, still, {}, {});
+    EXPECT_EQ(end.summary.outcome, session::Outcome::Complete) << end.summary.message;
+    ann->settle();
+    ann->refresh();
+    EXPECT_EQ(end.summary.version, ann->scene().version());
+}
+
 TEST_F(LiveViews, APickFindsObjectPositionAndNormal) {
     cluster.add_node("embree");
     ann->request_view(1, view_of(101, 101, 1));
