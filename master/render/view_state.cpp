@@ -10,16 +10,12 @@ namespace tessera::master {
 namespace {
 constexpr std::int32_t LeastEdge = 16;  // of a coarse picture
 
-bool keeps_history(const view::View& view) {
-    const auto choice = filter::parse_choice(view.filter, filter::catalog());
-    return choice && choice->entry->description.temporal;
-}
-
 std::uint64_t seed_of_film(const ViewState& state) {
     const view::View& view = state.request.view;
-    return view.seed + (keeps_history(view) && state.shows_all() && state.films > 0 ? state.films - 1 : 0);
+    const auto choice = filter::parse_choice(view.filter, filter::catalog());
+    const bool keeps_history = choice && choice->entry->description.temporal;
+    return view.seed + (keeps_history && state.shows_all() && state.films > 0 ? state.films - 1 : 0);
 }
-
 }  // namespace
 
 bool has_coarse_pass(const view::View& view, std::uint32_t scale) {
@@ -33,8 +29,6 @@ std::vector<Pass> passes_of(const ViewState& state, std::uint32_t coarsest) {
         if (!state.shows_all() || scale > coarsest || !has_coarse_pass(whole, scale)) continue;
         Pass pass{.view = scaled_view(whole, scale), .kind = Pass::Kind::Coarse, .scale = scale};
         pass.view.channels = whole.channels;
-        // Others are slow, or need more than one sample per pixel.
-        if (!keeps_history(whole)) pass.view.filter.clear();
         passes.push_back(std::move(pass));
     }
     const bool upsampled = state.run.scale > 1;
