@@ -138,7 +138,7 @@ TEST(PsvgfSpeed, HardlyDependsOnSceneAndCamera) {  // DT28
             subjects.emplace_back("psvgf:blend=off", psvgf_frames(320, 180, camera, 1.0, scene), "wavelet");
         }
     }
-    measure(subjects, 8);
+    measure(subjects, 16);
     for (std::size_t i = 0; i < subjects.size(); ++i) {
         const std::size_t first = i / 3 * 3;  // of the same camera
         EXPECT_NEAR(subjects[i].seconds / subjects[first].seconds, 1.0, 0.2) << i;
