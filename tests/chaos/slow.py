@@ -108,7 +108,8 @@ class Stage:
         return self._start("render", SCENE, "--size", SIZE, "--spp", SPP, "-o", self._programs.scratch / "slow.exr")
 
     def start_watch(self):
-        return self._start("watch", "--size", SIZE, "--spp", "16", "-o", self._programs.scratch / "slow.png")
+        # As sampled: --memory does not limit denoisers, whose memory grows until each size of picture has been made twice.
+        return self._start("watch", "--size", SIZE, "--spp", "16", "--denoise=none", "-o", self._programs.scratch / "slow.png")
 
     def _start(self, command, *words):
         child = self._programs.start("tessera", command, *words, "--master", self.cluster.endpoint, "--keys", self.cluster.keys)
