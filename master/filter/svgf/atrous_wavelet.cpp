@@ -2,8 +2,6 @@
 
 #include <array>
 
-#include "master/filter/svgf/pair_weights.h"
-
 namespace tessera::filter::svgf {
 
 namespace {
@@ -19,6 +17,25 @@ struct RowTerms {
     std::array<float*, DirectionCount> depth_scale;
     float *luminance, *luminance_scale;
 };
+
+// One end of a row of pairs.
+struct End {
+    const float *nx, *ny, *nz, *inverse_depth, *depth_scale, *luminance, *luminance_scale;
+    const std::uint32_t* ids;
+};
+
+void pair_weights(const End& a, const End& b, std::size_t count, float kernel, float sigma_n,
+                  float* __restrict weights) {
+    for (std::size_t x = 0; x < count; ++x) {
+        const float dot = a.nx[x] * b.nx[x] + a.ny[x] * b.ny[x] + a.nz[x] * b.nz[x];
+        const float depth =
+            std::fabs(a.inverse_depth[x] - b.inverse_depth[x]) * std::max(a.depth_scale[x], b.depth_scale[x]);
+        const float light =
+            std::fabs(a.luminance[x] - b.luminance[x]) * std::max(a.luminance_scale[x], b.luminance_scale[x]);
+        const float w = kernel * exp_negative(-(normal_distance(dot, sigma_n) + depth + light));
+        weights[x] = (a.ids[x] == b.ids[x]) & (dot > 0.0f) ? w : 0.0f;
+    }
+}
 
 void row_terms(const Guides& guides, const EdgeStops& stops, float step, const PaddedPlanes& from,
                std::uint32_t y, const RowTerms& terms) {
@@ -40,13 +57,26 @@ void row_terms(const Guides& guides, const EdgeStops& stops, float step, const P
         to_down_right[x] = counts * depth_scale(inverse[x], dx + dy, s);
         to_down_left[x] = counts * depth_scale(inverse[x], dy - dx, s);
     }
-    luminance_terms(from, y, stops, terms.luminance, terms.luminance_scale);
+    const float *r = from.row(0, y), *g = from.row(1, y), *b = from.row(2, y), *v = from.row(3, y);
+    float* __restrict light = terms.luminance;
+    float* __restrict scale = terms.luminance_scale;
+    const bool square_root = s.deviation != Deviation::Variance;
+    for (std::size_t x = 0; x < width; ++x) {
+        const float l = luma(r[x], g[x], b[x]);
+        light[x] = l;
+        scale[x] = luminance_scale(l, square_root ? std::sqrt(v[x]) : v[x], s);
+    }
 }
 
-PairEnd end_of(const Guides& guides, const RowTerms& terms, Direction direction, std::uint32_t y,
-               std::size_t x) {
-    return pair_end(guides, terms.depth_scale[direction], terms.luminance, terms.luminance_scale, y,
-                    static_cast<std::int64_t>(x));
+End end_of(const Guides& guides, const RowTerms& terms, Direction direction, std::uint32_t y, std::size_t x) {
+    return {guides.normal.row(0, y) + x,
+            guides.normal.row(1, y) + x,
+            guides.normal.row(2, y) + x,
+            guides.inverse_depth.row(0, y) + x,
+            terms.depth_scale[direction] + x,
+            terms.luminance + x,
+            terms.luminance_scale + x,
+            guides.ids.data() + std::size_t{y} * guides.inverse_depth.width() + x};
 }
 
 }  // namespace
