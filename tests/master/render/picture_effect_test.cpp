@@ -97,13 +97,19 @@ TEST(PictureEffect, LargePartsAreTakenToContainALight) {
         entries.emplace_back(Create{ObjectId{id}, Geometry{}});
     }
     entries.emplace_back(Create{ObjectId{10}, parts});
+    const double start = test::thread_cpu_seconds();
     ASSERT_TRUE(scene.apply_entries(entries));
+    const double applying = test::thread_cpu_seconds() - start;
     const auto changes =
         list_of(Update{ObjectId{10}, Fields<Transform>(&Transform::matrix).bits(), Transform{}});
-    const double start = test::thread_cpu_seconds();
+    const double before = test::thread_cpu_seconds();
     const PictureEffect effect = picture_effect(changes, scene);
+    const double looking = test::thread_cpu_seconds() - before;
     EXPECT_TRUE(effect.geometry && effect.lights_or_materials);
-    EXPECT_LT(test::thread_cpu_seconds() - start, 0.005) << "of CPU time, on the loop of a master";
+    RecordProperty("share", std::to_string(looking / applying));
+    if (!test::IsSanitized) {
+        EXPECT_LT(looking, 0.02 * applying) << "on the loop of a master";
+    }
 }
 
 TEST(PictureEffect, TransformOfACameraHasNoEffect) {
