@@ -312,6 +312,7 @@ FilterEntry pixel_entry() {
     return {{.name = "pixel",
              .summary = "cross-bilateral filter of the high-variance light, blended by perceived variance",
              .source = "Schwenk 3",
+             .bytes_per_pixel = 270,
              .parameters = pixel_parameters(),
              .channels =
                  [](const Values& values) {
@@ -321,7 +322,8 @@ FilterEntry pixel_entry() {
                      return channels;
                  },
              .consistent = true,
-             .reads_variances = true},
+             .reads_variances = true,
+             .incremental = true},
             [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> {
                 return std::make_unique<PixelFilter>();
             }};

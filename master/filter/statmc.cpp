@@ -255,6 +255,7 @@ FilterEntry statmc_entry() {
         {.name = "statmc",
          .summary = "averages pixels with statistically indistinguishable means (confidence intervals)",
          .source = "Sakai et al. 2024",
+         .bytes_per_pixel = 208,
          .parameters = {{"radius", "px", "radius of the window", 10, 1, 40, {}},
                         {"sigma", "px", "standard deviation of the spatial weight", 5, 0.1, 100, {}},
                         {"confidence",
