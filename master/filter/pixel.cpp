@@ -75,7 +75,7 @@ class PixelFilter final : public Filter {
         const bool pass = needs_pass(inputs, values, samples);
         const bool shown = pass || has_pass_;
         {
-            PassTimer timer(report, "light", 4.0 * (2 + 9));  // counts are read twice
+            PassTimer timer(report, "light", 4.0 * (3 + 9));  // counts are read three times
             holes_.find(inputs);
             light_.prepare(inputs, holes_, context);
         }
@@ -117,7 +117,8 @@ class PixelFilter final : public Filter {
 
     bool filter(const Inputs& inputs, const Values& values, Report& report, RunContext& context) {
         const bool with_normals = is_on(values, Normals);
-        const auto layers = 4.0 + (inputs.has(Channel::Alpha) ? 1.0 : 0.0);
+        const auto layers =
+            4.0 + (inputs.has(Channel::Alpha) ? 1.0 : 0.0) + (light_.has_uneven_counts() ? 1.0 : 0.0);
         {
             const double guide = 2.0 * (with_normals ? 7 : 4), field = 7.0 + layers + 1.0;
             PassTimer timer(report, "guide", 4.0 * (guide + field));
@@ -125,11 +126,13 @@ class PixelFilter final : public Filter {
                                       with_normals ? number(values, SigmaNormal) : 0.0f};
             guide_.prepare(inputs, holes_, tolerance, context);
             light_.fill(inputs, holes_, field_, context);
-            scratch_.fit(inputs.width, inputs.height, field_.values.components());
+            scratch_.fit(inputs.width, inputs.height, field_.values.components(), field_.weighted);
         }
         if (!choose_widths(inputs, values, report, context)) return false;
         PassTimer timer(report, "filter", bytes_of_filter(values, layers));
         if (!run_method(values, context)) return false;
+        light_.divide_by_counts(inputs, holes_, field_, context);
+        if (field_.weighted) return true;  // the variance is that of one sample
         return for_rows(context, inputs.height, [&](std::uint32_t y) {
             float* variance = field_.values.row(Field::Variance, y);
             const float* n = inputs.counts.row(0, y);
