@@ -189,11 +189,13 @@ class PixelFilter final : public Filter {
 
     bool blend(const Inputs& inputs, const Values& values, Report& report, Output& out, RunContext& context) {
         const std::uint32_t components = inputs.color_components();
-        PassTimer timer(report, "blend", 4.0 * (3.0 * 3 + components + 3 + components));
+        PassTimer timer(report, "blend", 4.0 * (3.0 * 3 + components + 3 + components + 1));
         const Blend how{number(values, Threshold), static_cast<Root>(values[RootChoice]),
                         number(values, SpikeClamp)};
         BlendMaps maps;
         if (out.wants_maps) maps = prepare_maps(inputs, out);
+        shape(self_weight_, inputs, 1);
+        maps.self_weight = &self_weight_;
         return compose(inputs, light_, field_, how, out.picture, maps, context);
     }
 
@@ -202,7 +204,7 @@ class PixelFilter final : public Filter {
         PassTimer timer(report, "convergence blend",
                         ConvergenceBlend::bytes_per_pixel(inputs.color_components()));
         const Channel noisy = inputs.has(Channel::HighVariance) ? Channel::HighVariance : Channel::Radiance;
-        return convergence_blend_.apply(inputs, noisy, {}, out.picture, context);
+        return convergence_blend_.apply(inputs, noisy, self_weight_.plane(0), out.picture, context);
     }
 
     BlendMaps prepare_maps(const Inputs& inputs, Output& out) const {
@@ -234,6 +236,7 @@ class PixelFilter final : public Filter {
         return true;
     }
 
+    Planes self_weight_;  // in the blended picture
     Holes holes_;
     Light light_;
     Guide guide_;
