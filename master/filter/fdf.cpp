@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <span>
 
 #include "master/filter/convergence_blend.h"
 #include "master/filter/fdf/feature_bilateral.h"
@@ -67,9 +69,9 @@ class Fdf final : public Filter {
     }
 
   private:
-    // Classes, and the shading feature and its variance in units of the mean over surfaces.
+    // Classes, and the shading feature and its variance in units of its mean.
     bool prepare(const Inputs& inputs, Report& report, RunContext& context) {
-        PassTimer timer(report, "features", 36.0);
+        PassTimer timer(report, "features", 44.0);
         const bool has_alpha = inputs.has(Channel::Alpha), has_depth = inputs.has(Channel::Depth);
         const bool has_shading = inputs.has(Channel::ShadingFeature);
         if (!has_shading) report.notes.push_back("no shading feature: shadows are not preserved");
@@ -85,8 +87,31 @@ class Fdf final : public Filter {
                                              : true;
                 classes[x] = counts[x] == 0.0f ? Hole : hit ? Surface : Background;
                 sum.holes += counts[x] == 0.0f;
-                if (classes[x] != Surface || !has_shading) continue;
-                sum.light += light.row(0, y)[x];
+            }
+            sums_[y] = sum;
+        });
+        holes_ = 0;
+        for (const RowSum& row : sums_) holes_ += row.holes;
+        return done && has_shading ? normalise(inputs, mean_shading(inputs, context), context) : done;
+    }
+
+    // Over surfaces without directly seen lamps, whose own emission is no shading: a small one that is far
+    // brighter than the room would make every difference in it look small, and shadows would be blurred. A
+    // single sample that found much light is as bright, but its variance shows it. Windows of interiors have 20 to
+    // 200 times the median: leaving them out keeps more specks.
+    double mean_shading(const Inputs& inputs, RunContext& context) {
+        constexpr float Brighter = 200.0f, Certain = 1.0f / 16.0f;
+        const float most = Brighter * median_shading(inputs);
+        for_rows(context, inputs.height, [&](std::uint32_t y) {
+            const float* light = inputs.mean(Channel::ShadingFeature).row(0, y);
+            const float* variance = inputs.variance(Channel::ShadingFeature).row(0, y);
+            const float *counts = inputs.counts.row(0, y), *classes = classes_.row(0, y);
+            RowSum sum;
+            for (std::uint32_t x = 0; x < inputs.width; ++x) {
+                const float s = light[x];
+                const bool lamp = s > most && counts[x] >= 2.0f && variance[x] < Certain * s * s;
+                if (classes[x] != Surface || lamp) continue;
+                sum.light += s;
                 sum.count += 1.0;
             }
             sums_[y] = sum;
@@ -95,11 +120,25 @@ class Fdf final : public Filter {
         for (const RowSum& row : sums_) {
             total.light += row.light;
             total.count += row.count;
-            total.holes += row.holes;
         }
-        holes_ = total.holes;
-        const double mean = total.light > 0.0 ? total.light / total.count : 1.0;
-        return done && has_shading ? normalise(inputs, std::max(mean, 1e-30), context) : done;
+        return total.light > 0.0 ? std::max(total.light / total.count, 1e-30) : 1.0;
+    }
+
+    // Of the surfaces that are not black, at about 4096 pixels. Infinite if there are none.
+    float median_shading(const Inputs& inputs) {
+        constexpr std::size_t Most = 4096;
+        const std::span<const float> light = inputs.mean(Channel::ShadingFeature).plane(0);
+        const std::size_t step =
+            (inputs.pixel_count() / Most + 1) | 1;  // odd: does not alias with even widths
+        some_.clear();
+        some_.reserve(Most);
+        for (std::size_t i = 0; i < inputs.pixel_count(); i += step) {
+            if (classes_.plane(0)[i] == Surface && light[i] > 0.0f) some_.push_back(light[i]);
+        }
+        if (some_.empty()) return std::numeric_limits<float>::infinity();
+        const auto middle = some_.begin() + static_cast<std::ptrdiff_t>(some_.size() / 2);
+        std::ranges::nth_element(some_, middle);
+        return *middle;
     }
 
     bool normalise(const Inputs& inputs, double mean, RunContext& context) {
@@ -174,6 +213,7 @@ class Fdf final : public Filter {
         std::size_t holes = 0;
     };
     std::vector<RowSum> sums_;
+    std::vector<float> some_;
     Planes classes_, shading_, variance_, filtered_, self_;
     std::vector<std::uint32_t> ids_;
     bool prefiltered_ = false;
