@@ -14,12 +14,13 @@ namespace {
 
 using frame::Channel;
 
-constexpr std::uint32_t Size = 96;
+constexpr std::uint32_t PictureSize = 96;
 
 Inputs shadows(std::uint64_t n, std::uint64_t seed = 1) {
-    return synthetic_inputs(Size, Size, n, [seed](std::uint32_t x, std::uint32_t y, std::uint64_t i) {
-        return shadowed_texture(Size, Size, x, y, i, seed);
-    });
+    return synthetic_inputs(PictureSize, PictureSize, n,
+                            [seed](std::uint32_t x, std::uint32_t y, std::uint64_t i) {
+                                return shadowed_texture(PictureSize, PictureSize, x, y, i, seed);
+                            });
 }
 
 // A wave of light that the guide does not show, on a plain wall; samples are exponentially distributed.
@@ -29,13 +30,15 @@ float caustic_at(std::uint32_t x, std::uint32_t y) {
 }
 
 Inputs caustics(std::uint64_t n, std::uint64_t seed) {
-    return synthetic_inputs(Size, Size, n, [seed](std::uint32_t x, std::uint32_t y, std::uint64_t i) {
-        SyntheticSample sample;
-        CounterRandom random(mix(seed + 77 * i), std::uint64_t{y} << 32 | x);
-        const auto light = static_cast<float>(-std::log(1.0 - random.uniform()) * double(caustic_at(x, y)));
-        sample.high = {light, 0.7f * light, 0.4f * light};
-        return sample;
-    });
+    return synthetic_inputs(
+        PictureSize, PictureSize, n, [seed](std::uint32_t x, std::uint32_t y, std::uint64_t i) {
+            SyntheticSample sample;
+            CounterRandom random(mix(seed + 77 * i), std::uint64_t{y} << 32 | x);
+            const auto light =
+                static_cast<float>(-std::log(1.0 - random.uniform()) * double(caustic_at(x, y)));
+            sample.high = {light, 0.7f * light, 0.4f * light};
+            return sample;
+        });
 }
 
 bool same_bits(float a, float b) {
@@ -59,7 +62,7 @@ TEST(PixelFilter, IsTheUnfilteredPictureWhereItHasConverged) {
 
 // relMSE 0.25 is a root of 0.5.
 TEST(PixelFilter, HalvesTheErrorAtFourSamplesAndLowersItLater) {
-    const Planes truth = shadowed_texture_truth(Size, Size);
+    const Planes truth = shadowed_texture_truth(PictureSize, PictureSize);
     for (const std::uint64_t n : {4, 8, 16, 32}) {
         const Inputs inputs = shadows(n);
         for (const char* choice : {"pixel", "pixel:root=simple", "pixel:adaptive=off", "pixel:method=brute",
@@ -79,7 +82,7 @@ TEST(PixelFilter, MeetsTheThresholdInTheMedian) {
         // The design effect of independent samples is a little below 1 (frame/design_effect.h).
         const double slack = std::string(choice) == "pixel:blend=off" ? 1.05 : 1.5;
         for (const std::uint64_t n : {4, 16}) {
-            std::vector<double> sum(Size * Size, 0.0), squares(Size * Size, 0.0);
+            std::vector<double> sum(PictureSize * PictureSize, 0.0), squares(PictureSize * PictureSize, 0.0);
             for (int seed = 0; seed < Seeds; ++seed) {
                 const Output out = run_filter(choice, shadows(n, static_cast<std::uint64_t>(seed) + 1));
                 for (std::size_t i = 0; i < sum.size(); ++i) {
@@ -103,9 +106,9 @@ TEST(PixelFilter, MeetsTheThresholdInTheMedian) {
 }
 
 TEST(AdaptiveWidths, StayNearTheGuideLineAndHelpCaustics) {
-    Planes truth(Size, Size, 3);
-    for (std::uint32_t y = 0; y < Size; ++y) {
-        for (std::uint32_t x = 0; x < Size; ++x) {
+    Planes truth(PictureSize, PictureSize, 3);
+    for (std::uint32_t y = 0; y < PictureSize; ++y) {
+        for (std::uint32_t x = 0; x < PictureSize; ++x) {
             const float light = caustic_at(x, y);
             truth.row(0, y)[x] = light;
             truth.row(1, y)[x] = 0.7f * light;
@@ -294,7 +297,7 @@ TEST(PixelFilter, HasTheSameBitsOnAnyNumberOfThreads) {
         for (const int threads : {1, 2, 5}) {
             tbb::task_arena arena(threads);
             Output out;
-            choice.entry->make(Size, Size)->run(inputs, choice.values, out, {arena, {}});
+            choice.entry->make(PictureSize, PictureSize)->run(inputs, choice.values, out, {arena, {}});
             if (first.empty()) first = out.picture;
             EXPECT_TRUE(std::ranges::equal(first.values(), out.picture.values())) << text << " " << threads;
         }
@@ -316,7 +319,8 @@ TEST(PixelFilter, FiltersWithoutOptionalChannelsAndWarns) {
     const Choice choice = parse_choice("pixel", catalog()).value();
     tbb::task_arena arena(2);
     Output out;
-    const Report report = choice.entry->make(Size, Size)->run(inputs, choice.values, out, {arena, {}});
+    const Report report =
+        choice.entry->make(PictureSize, PictureSize)->run(inputs, choice.values, out, {arena, {}});
     EXPECT_EQ(report.notes.size(), 2u);
     for (const float value : out.picture.values()) EXPECT_TRUE(std::isfinite(value));
 }
@@ -328,8 +332,9 @@ TEST(PixelFilter, StopsWhenAsked) {
     tbb::task_arena arena(2);
     Output out;
     const Inputs inputs = shadows(4);
-    EXPECT_TRUE(
-        choice.entry->make(Size, Size)->run(inputs, choice.values, out, {arena, stop.get_token()}).stopped);
+    EXPECT_TRUE(choice.entry->make(PictureSize, PictureSize)
+                    ->run(inputs, choice.values, out, {arena, stop.get_token()})
+                    .stopped);
 }
 
 }  // namespace

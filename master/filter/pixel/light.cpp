@@ -27,17 +27,18 @@ void fill_row(const Inputs& inputs, const Holes& holes, std::uint32_t y, float* 
 
 }  // namespace
 
-void Light::prepare(const Inputs& inputs, const Holes& holes, RunContext& context) {
+void Light::prepare(const Inputs& inputs, const Holes& holes, LightScope which, RunContext& context) {
     least_count_ = std::numeric_limits<float>::max();
     largest_count_ = 0.0f;
     for (const float n : inputs.counts.plane(0)) {
         least_count_ = n > 0.0f ? std::min(least_count_, n) : least_count_;
         largest_count_ = std::max(largest_count_, n);
     }
-    const bool split = inputs.has(Channel::HighVariance);
+    const bool split = which == LightScope::PathClass && inputs.has(Channel::HighVariance);
+    channel_ = split ? Channel::HighVariance : Channel::Radiance;
     const bool low_is_there = split && inputs.has(Channel::LowVariance);
     const Planes& radiance = inputs.mean(Channel::Radiance);
-    const Planes& high = split ? inputs.mean(Channel::HighVariance) : radiance;
+    const Planes& high = inputs.mean(channel_);
     const Planes& low = low_is_there ? inputs.mean(Channel::LowVariance) : radiance;
     high_ = holes.any() ? &own_high_ : &high;
     low_ = holes.any() || !low_is_there ? &own_low_ : &low;
@@ -62,8 +63,7 @@ void Light::prepare(const Inputs& inputs, const Holes& holes, RunContext& contex
 void Light::fill(const Inputs& inputs, const Holes& holes, Field& field, RunContext& context) const {
     const bool alpha = inputs.has(Channel::Alpha), weighted = has_uneven_counts();
     field.fit(inputs.width, inputs.height, 4u + (alpha ? 1u : 0u) + (weighted ? 1u : 0u), weighted);
-    const Channel channel = inputs.has(Channel::HighVariance) ? Channel::HighVariance : Channel::Radiance;
-    const Planes &mean = inputs.mean(channel), &variance = inputs.variance(channel);
+    const Planes &mean = inputs.mean(channel_), &variance = inputs.variance(channel_);
     const float* n = inputs.counts.plane(0).data();
     const float *r = mean.plane(0).data(), *g = mean.plane(1).data(), *b = mean.plane(2).data();
     const float *vr = variance.plane(0).data(), *vg = variance.plane(1).data(),

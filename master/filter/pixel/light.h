@@ -4,6 +4,9 @@
 
 namespace tessera::filter::pixel {
 
+// The high-variance light, or all.
+enum class LightScope { PathClass, All };
+
 // The filtered and unfiltered light of an input. Without HighVariance all radiance counts as high-variance;
 // without LowVariance the rest of the radiance counts as low-variance.
 //
@@ -19,7 +22,7 @@ namespace tessera::filter::pixel {
 class Light {
   public:
     // Keeps references to `inputs` where it can, copies where there are holes or channels are missing.
-    void prepare(const Inputs& inputs, const Holes& holes, RunContext& context);
+    void prepare(const Inputs& inputs, const Holes& holes, LightScope which, RunContext& context);
 
     // The filtered light: values within +-1e30, so that weighted sums are finite; r = 1. Holes take the
     // values of their origin. The variance is that of the mean; where counts differ, `field` is weighted.
@@ -32,6 +35,8 @@ class Light {
     const Planes& low() const { return *low_; }    // 3 components
     const Planes& high() const { return *high_; }  // 3 components
 
+    frame::Channel channel() const { return channel_; }  // of high(), with its variance
+
     // Pixels with samples do not all have as many.
     bool has_uneven_counts() const { return least_count_ < largest_count_; }
 
@@ -40,6 +45,7 @@ class Light {
 
     const Planes* low_ = nullptr;
     const Planes* high_ = nullptr;
+    frame::Channel channel_ = frame::Channel::Radiance;
     Planes own_low_, own_high_;
     float least_count_ = 0.0f, largest_count_ = 0.0f;  // of pixels with samples
 };
