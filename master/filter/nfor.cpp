@@ -7,7 +7,7 @@
 #include "master/filter/convergence_blend.h"
 #include "master/filter/moderated_variance.h"
 #include "master/filter/nfor/selection.h"
-#include "master/filter/nfor/self_weight.h"
+#include "master/filter/self_weight.h"
 #include "master/filter/svgf/hole_fill.h"
 
 namespace tessera::filter {
@@ -81,7 +81,9 @@ class Nfor final : public Filter {
                         ConvergenceBlend::bytes_per_pixel(out.picture.components()));
         std::span<const float> own;
         if (has_halves) {
-            if (!self_weight_.run(inputs, colors_, scale_, refined_.plane(Colors - 1), out.picture, context))
+            add_difference(inputs, context);
+            if (!self_weight_.run(inputs, light_.plane(0), scale_.plane(0), refined_.plane(Colors - 1),
+                                  out.picture, context))
                 return false;
             own = self_weight_.weights();
         }
@@ -180,6 +182,18 @@ class Nfor final : public Filter {
                 const float* from = refined_.row(c, y);
                 float* to = picture.row(c, y);
                 for (std::uint32_t x = 0; x < width; ++x) to[x] = std::clamp(from[x], 0.0f, most);
+            }
+        });
+    }
+
+    // The difference of the halves, summed over r, g, b, in a plane of the second pass, which is over.
+    void add_difference(const Inputs& inputs, RunContext& context) {
+        for_rows(context, inputs.height, [&](std::uint32_t y) {
+            float* to = light_.row(0, y);
+            std::fill_n(to, inputs.width, 0.0f);
+            for (std::uint32_t c = 0; c < 3; ++c) {
+                const float *one = colors_[0].row(c, y), *two = colors_[1].row(c, y);
+                for (std::uint32_t x = 0; x < inputs.width; ++x) to[x] += one[x] - two[x];
             }
         });
     }
