@@ -123,7 +123,7 @@ class Psvgf final : public Filter {
         const bool shown_fits = shown_before_.pixel_count() == inputs.pixel_count() &&
                                 shown_before_.components() == out.picture.components();
         if (history && values[Taa] == On && shown_fits) {
-            PassTimer timer(report, "antialias", 4.0 * (3 * out.picture.components() + 5));
+            PassTimer timer(report, "antialias", 4.0 * (4 * out.picture.components() + 2 * 4 + 5));
             if (!smooth_edges(inputs, static_cast<float>(values[TaaRatio]), out.picture, context))
                 return false;
         }
@@ -195,7 +195,7 @@ class Psvgf final : public Filter {
             const float age = moments.plane(Age)[i];
             newness_.plane(0)[i] = age > 0.0f ? inputs.counts.plane(0)[i] / age : 1.0f;
         }
-        if (!antialias(picture, shown_before_, now_, motion_, newness_, ratio, smoothed_, context))
+        if (!antialiasing_.run(picture, shown_before_, now_, motion_, newness_, ratio, smoothed_, context))
             return false;
         std::ranges::copy(smoothed_.values(), picture.values().begin());
         return true;
@@ -227,6 +227,7 @@ class Psvgf final : public Filter {
     Motion motion_;
     FilmLayers layers_;
     ConvergenceBlend convergence_blend_;
+    Antialiasing antialiasing_;
     Planes shown_, shown_before_, smoothed_, newness_;
 };
 

@@ -1,4 +1,4 @@
-// The components of progressive SVGF: edge stops, wavelet levels, hole filling, antialiasing.
+// The components of progressive SVGF: edge stops, wavelet levels, hole filling.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,7 +7,6 @@
 #include "master/filter/svgf/atrous_wavelet.h"
 #include "master/filter/svgf/hole_fill.h"
 #include "master/filter/svgf/spatial_variance.h"
-#include "master/filter/svgf/taa.h"
 #include "mediator/base/random.h"
 
 namespace tessera::filter::svgf {
@@ -291,107 +290,6 @@ TEST(Holes, AreFilledFromNeighbours) {  // DT21
     }
     EXPECT_LT(error / (width * height), 0.01);
     EXPECT_LT(wrong, 3.0 * height);  // at most some pixels next to the edge
-}
-
-struct Screen {
-    Screen(std::uint32_t width, std::uint32_t height)
-        : guides(flat(width, height)), newness(width, height, 1) {
-        motion.identity = true;
-        motion.position = Planes(width, height, 2);
-        motion.inverse_depth = guides.inverse_depth;
-        for (std::uint32_t y = 0; y < height; ++y) {
-            for (std::uint32_t x = 0; x < width; ++x) {
-                motion.position.row(0, y)[x] = static_cast<float>(x);
-                motion.position.row(1, y)[x] = static_cast<float>(y);
-            }
-        }
-    }
-    Planes blend(const Planes& picture, const Planes& before, float ratio) {
-        RunContext context{arena(), {}};
-        Planes out;
-        EXPECT_TRUE(antialias(picture, before, guides, motion, newness, ratio, out, context));
-        return out;
-    }
-    Guides guides;
-    Motion motion;
-    Planes newness;
-};
-
-TEST(Antialiasing, JitteredEdgesConvergeToTheirCoverage) {  // DT26
-    const std::uint32_t width = 64, height = 32;
-    Screen screen(width, height);
-    const auto edge = [](double x, double y) { return x + 0.37 * y < 36.3 ? 0.2f : 0.8f; };
-    Planes shown, exact(width, height, 3);
-    std::vector<double> sums(std::size_t{width} * height);
-    for (std::uint64_t frame = 0; frame < 64; ++frame) {
-        CounterRandom random(frame);
-        const double jx = random.uniform(), jy = random.uniform();
-        Planes picture(width, height, 3);
-        for (std::uint32_t y = 0; y < height; ++y) {
-            for (std::uint32_t x = 0; x < width; ++x) {
-                for (std::uint32_t c = 0; c < 3; ++c) picture.row(c, y)[x] = edge(x + jx, y + jy);
-            }
-        }
-        shown = frame == 0 ? picture : screen.blend(picture, shown, 0.1f);
-    }
-    double error = 0.0;
-    for (std::uint32_t y = 0; y < height; ++y) {
-        for (std::uint32_t x = 0; x < width; ++x) {
-            double covered = 0.0;
-            for (int k = 0; k < 64; ++k) covered += edge(x + (k % 8 + 0.5) / 8, y + (k / 8 + 0.5) / 8) / 64.0;
-            const double d = shown.row(0, y)[x] - covered;
-            error += d * d;
-        }
-    }
-    EXPECT_LT(std::sqrt(error / (width * height)), 0.02);
-}
-
-TEST(Antialiasing, StaysInTheNeighbourhoodRangeWithoutGhosting) {  // DT26
-    const std::uint32_t width = 64, height = 32;
-    Screen screen(width, height);
-    Planes shown;
-    for (std::uint32_t frame = 0; frame < 12; ++frame) {
-        Planes picture(width, height, 4);
-        for (std::uint32_t y = 0; y < height; ++y) {
-            for (std::uint32_t x = 0; x < width; ++x) {
-                const bool object = x >= 4 * frame && x < 4 * frame + 4;
-                for (std::uint32_t c = 0; c < 4; ++c) {
-                    picture.row(c, y)[x] = (object ? 1e5f : 0.1f) * (1.0f + 0.1f * c) + uniform(frame, x, y);
-                }
-            }
-        }
-        shown = frame == 0 ? picture : screen.blend(picture, shown, 0.1f);
-        for (std::uint32_t y = 1; y + 1 < height; ++y) {
-            for (std::uint32_t x = 1; x + 1 < width; ++x) {
-                for (std::uint32_t c = 0; c < 4; ++c) {
-                    float least = 1e30f, most = -1e30f;
-                    for (std::uint32_t ty = y - 1; ty <= y + 1; ++ty) {
-                        for (std::uint32_t tx = x - 1; tx <= x + 1; ++tx) {
-                            least = std::min(least, picture.row(c, ty)[tx]);
-                            most = std::max(most, picture.row(c, ty)[tx]);
-                        }
-                    }
-                    EXPECT_GE(shown.row(c, y)[x], least - 1e-6f * least);
-                    EXPECT_LE(shown.row(c, y)[x], most * (1.0f + 1e-6f));
-                }
-                if (frame >= 1 && x + 2 < 4 * frame) {
-                    EXPECT_LT(shown.row(0, y)[x], 2.0f) << frame << " " << x;
-                }
-            }
-        }
-    }
-}
-
-TEST(Antialiasing, WithNewSamplesAloneThePictureStays) {
-    const std::uint32_t width = 16, height = 8;
-    Screen screen(width, height);
-    std::ranges::fill(screen.newness.values(), 1.0f);
-    Planes picture(width, height, 3), before(width, height, 3);
-    for (std::size_t i = 0; i < picture.values().size(); ++i) {
-        picture.values()[i] = uniform(3, static_cast<std::uint32_t>(i), 0);
-    }
-    const Planes out = screen.blend(picture, before, 0.1f);
-    for (std::size_t i = 0; i < picture.values().size(); ++i) EXPECT_EQ(out.values()[i], picture.values()[i]);
 }
 
 }  // namespace
