@@ -1,7 +1,9 @@
 #include "master/filter/psvgf.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
+#include <vector>
 
 #include "master/filter/convergence_blend.h"
 #include "master/filter/svgf/demodulate.h"
@@ -118,7 +120,8 @@ class Psvgf final : public Filter {
                             ConvergenceBlend::bytes_per_pixel(out.picture.components()));
             const bool diffuse_alone = !rest_filtered && knows_diffuse(inputs);
             const Channel part = diffuse_alone ? Channel::HighVariance : Channel::Radiance;
-            if (!convergence_blend_.apply(inputs, part, {}, out.picture, context)) return false;
+            if (!convergence_blend_.apply(inputs, part, self_weights(signals), out.picture, context))
+                return false;
         }
         const bool shown_fits = shown_before_.pixel_count() == inputs.pixel_count() &&
                                 shown_before_.components() == out.picture.components();
@@ -188,6 +191,20 @@ class Psvgf final : public Filter {
         return sum / static_cast<double>(ages.size());
     }
 
+    // Of the picture: the least of the signals', so that noise is not underestimated.
+    std::span<const float> self_weights(std::span<const Signal> signals) {
+        for (std::size_t i = 0; i < signals.size(); ++i) {
+            self_weights_[i].resize(std::size_t{width_} * height_);
+            signals[i].self_weights(self_weights_[i]);
+        }
+        std::vector<float>& least = self_weights_[0];
+        if (signals.size() > 1) {
+            std::ranges::transform(least, self_weights_[1], least.begin(),
+                                   [](float a, float b) { return std::min(a, b); });
+        }
+        return least;
+    }
+
     bool smooth_edges(const Inputs& inputs, float ratio, Planes& picture, RunContext& context) {
         shape(newness_, inputs, 1);
         const Planes& moments = signals_[0].now().moments;
@@ -227,6 +244,7 @@ class Psvgf final : public Filter {
     Motion motion_;
     FilmLayers layers_;
     ConvergenceBlend convergence_blend_;
+    std::array<std::vector<float>, 2> self_weights_;
     Antialiasing antialiasing_;
     Planes shown_, shown_before_, smoothed_, newness_;
 };

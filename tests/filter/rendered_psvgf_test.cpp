@@ -144,5 +144,23 @@ TEST(RenderedPsvgf, FeedbackHelpsAtFirstAndHurtsLater) {  // DT19
     }
 }
 
+// Where the transform keeps most of a pixel's weight, the noise of the difference to the samples is small, and the bias
+// is visible.
+TEST(RenderedPsvgf, NearlyConvergedPenumbraeAreNotBlurred) {
+    const RenderedScene scene("grids", 80, 45);
+    const Planes reference = scene.reference(ReferenceSeed, 1024);
+    const Inputs film = scene.frame(1, 64);
+    const auto error = [&](const char* choice) {
+        const Planes picture = run_filter(choice, film).picture;
+        double sum = 0.0;
+        for (std::size_t i = 0; i < reference.values().size(); ++i) {
+            const double t = reference.values()[i], d = picture.values()[i] - t;
+            sum += d * d / (t * t + 1e-3);
+        }
+        return sum;
+    };
+    EXPECT_LT(error("psvgf"), 1.5 * error("none"));
+}
+
 }  // namespace
 }  // namespace tessera::filter

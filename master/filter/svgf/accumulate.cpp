@@ -69,6 +69,7 @@ bool accumulate(const Planes& history, const Accumulation& how, State& state, Pl
         const float* old_variance = history.row(HistoryMoments + SampleVariance, y);
         float *__restrict red = state.color.row(0, y), *__restrict green = state.color.row(1, y),
               *__restrict blue = state.color.row(2, y);
+        float* __restrict own = state.color.row(OwnWeightComponent, y);
         const float *old_red = history.row(0, y), *old_green = history.row(1, y),
                     *old_blue = history.row(2, y);
         for (std::size_t x = 0; x < width; ++x) {
@@ -78,6 +79,7 @@ bool accumulate(const Planes& history, const Accumulation& how, State& state, Pl
             const float filled = old > 0.0f ? 0.0f : 1.0f;
             const float r = n > 0.0f ? (old > 0.0f ? weight : 1.0f) : filled;
             const float q = 1.0f - r;
+            own[x] = n > 0.0f ? r : 0.0f;
             age[x] = n > 0.0f ? std::min(n + old, n / r) : old;
             red[x] = r * red[x] + q * old_red[x];
             green[x] = r * green[x] + q * old_green[x];

@@ -7,7 +7,7 @@ namespace tessera::filter::svgf {
 
 // The accumulated state of one signal, per pixel.
 struct State {
-    PaddedPlanes color;  // r, g, b; component 3 holds the variance for the wavelet transform
+    PaddedPlanes color;  // SignalComponents; the variance is that of the wavelet transform
     Planes moments;      // mean luminance, E[L^2] - E[L]^2 of one sample (E-D6), age in samples
 };
 inline constexpr std::uint32_t MeanLuminance = 0, SampleVariance = 1, Age = 2, MomentCount = 3;

@@ -48,6 +48,7 @@ bool demodulate(const Inputs& inputs, State& state, RunContext& context) {
         float* __restrict l = state.moments.row(MeanLuminance, y);
         float* __restrict v = state.moments.row(SampleVariance, y);
         float* __restrict age = state.moments.row(Age, y);
+        std::fill_n(state.color.row(OwnWeightComponent, y), width, 1.0f);
 #pragma GCC ivdep  // the state is no part of the film
         for (std::size_t x = 0; x < width; ++x) {
             const float n = counts[x];
@@ -92,6 +93,7 @@ bool take_rest(const Inputs& inputs, const Planes& rest, State& state, RunContex
         float* __restrict l = state.moments.row(MeanLuminance, y);
         float* __restrict v = state.moments.row(SampleVariance, y);
         float* __restrict age = state.moments.row(Age, y);
+        std::fill_n(state.color.row(OwnWeightComponent, y), width, 1.0f);
         for (std::size_t x = 0; x < width; ++x) {
             const float deviation = luma_deviation(vr[x], vg[x], vb[x]);
             l[x] = luma(red[x], green[x], blue[x]);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "master/filter/svgf/accumulate.h"
 #include "master/filter/svgf/atrous_wavelet.h"
 #include "master/filter/svgf/atrous_wavelet_5x5.h"
@@ -40,6 +42,10 @@ class Signal {
     bool filter(const Guides& guides, const Settings& settings, bool feedback, Report& report,
                 RunContext& context);
     const PaddedPlanes& filtered() const { return *filtered_; }
+    // a of ConvergenceBlend for filtered(), per pixel in [0, 1]. The noise of U - F, relative to that of U, is
+    // 1 - 2 w + sum w^2 with the weight w of each pixel's samples in F; the last term is what the transform leaves of the
+    // variance.
+    void self_weights(std::span<float> weights) const;
 
   private:
     bool feed_back(const PaddedPlanes& first_level, float limit, RunContext& context);
