@@ -63,6 +63,7 @@ class Psvgf final : public Filter {
 
     void reset() override {
         for (Signal& signal : signals_) signal.forget();
+        layers_.forget();
         known_ = has_before_ = false;
         pending_ = changes_ = {};
     }
@@ -103,13 +104,10 @@ class Psvgf final : public Filter {
         if (history) {
             PassTimer timer(report, "motion", 4.0 * 4);
             if (!find_motion(now_, before_, motion_, context)) return false;
+            motion_.still = motion_.identity && !changes_.lights_or_materials && !changes_.geometry &&
+                            layers_.has_history();
         }
-        for (Signal& signal : signals) {
-            if (history && signal.has_history() &&
-                !signal.blend_history(now_, before_, motion_, settings, report, context)) {
-                return false;
-            }
-        }
+        if (history && !blend_histories(signals, settings, report, context)) return false;
         const bool feedback = history && settings.feedback > 0.0f && mean_age() >= 1.0;
         for (Signal& signal : signals) {
             if (!signal.filter(now_, settings, feedback, report, context)) return false;
@@ -130,12 +128,26 @@ class Psvgf final : public Filter {
             if (!smooth_edges(inputs, static_cast<float>(values[TaaRatio]), out.picture, context))
                 return false;
         }
-        PassTimer timer(report, "keep", 8.0 * out.picture.components());
+        PassTimer timer(report, "keep", 8.0 * (out.picture.components() + 6));
         shape(shown_, inputs, out.picture.components());
         std::ranges::copy(out.picture.values(), shown_.values().begin());
+        layers_.keep(inputs);
         if (out.wants_maps) write_maps(inputs, out);
         known_ = true;
         return true;
+    }
+
+    bool blend_histories(std::span<Signal> signals, const Settings& settings, Report& report,
+                         RunContext& context) {
+        for (Signal& signal : signals) {
+            const bool weighs = motion_.still && &signal == signals.data();
+            if (signal.has_history() &&
+                !signal.blend_history(now_, before_, motion_, settings,
+                                      weighs ? layers_.albedos() : Albedos{}, report, context)) {
+                return false;
+            }
+        }
+        return !motion_.still || layers_.blend_history(signals[0].now(), report, context);
     }
 
     Settings settings_of(const Values& values) const {
@@ -176,6 +188,7 @@ class Psvgf final : public Filter {
     void begin_film() {
         if (known_) {
             for (Signal& signal : signals_) signal.restart();
+            layers_.restart();
             std::swap(now_, before_);
             std::swap(shown_, shown_before_);
             has_before_ = true;

@@ -184,7 +184,7 @@ TEST(Accumulation, KnowsTheWeightOfTheFilmsSamples) {
         state.color.row(0, 0)[x] = 1.0f;  // and 0 in the history
     }
     RunContext context{arena(), {}};
-    ASSERT_TRUE(accumulate(history, {.r0 = 0.0f}, state, trust, context));
+    ASSERT_TRUE(accumulate(history, {.r0 = 0.0f}, {}, state, trust, context));
     const std::array<float, 4> expected{0.25f, 1.0f, 0.0f, 0.25f};
     for (std::uint32_t x = 0; x < width; ++x) {
         EXPECT_NEAR(state.color.row(OwnWeightComponent, 0)[x], expected[x], 1e-6f) << x;

@@ -55,7 +55,8 @@ TEST(RenderedPsvgf, IsSimilarToTheLimitAfterFourFrames) {  // DT16, DT17
         }
         EXPECT_GT(found.filtered[2], found.unfiltered[4]) << name;
         EXPECT_GE(found.filtered[4], 0.8) << name;
-        EXPECT_LE(frames_to_converge(found), 6u) << name;
+        EXPECT_LE(frames_to_converge(found), 10u) << name;
+        EXPECT_GT(found.filtered[16], found.unfiltered[16] + 0.03) << name;
     }
 }
 

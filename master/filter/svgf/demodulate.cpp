@@ -8,8 +8,6 @@ namespace {
 
 using frame::Channel;
 
-constexpr float LeastAlbedo =
-    1e-4f;  // below it the light carries no information on the irradiance, and is not visible
 constexpr float MostVariance = 1e36f;  // so that sums over a window stay finite
 
 // Standard deviation of the luminance if all components vary together, as light does: an upper bound.

@@ -36,7 +36,8 @@ void Signal::forget() {
 }
 
 bool Signal::blend_history(const Guides& now, const Guides& before, const Motion& motion,
-                           const Settings& settings, Report& report, RunContext& context) {
+                           const Settings& settings, const Albedos& albedos, Report& report,
+                           RunContext& context) {
     std::array<HistoryView, HistoryCount> views;
     for (std::uint32_t c = 0; c < 3; ++c) views[c] = {before_.color.row(c, 0), before_.color.pitch()};
     for (std::uint32_t m = 0; m < MomentCount; ++m) {
@@ -47,7 +48,7 @@ bool Signal::blend_history(const Guides& now, const Guides& before, const Motion
         if (!reproject(now, before, motion, settings.tests, views, history_, context)) return false;
     }
     PassTimer timer(report, "accumulate", 4.0 * (3 * HistoryCount + 2 * MomentCount));
-    return accumulate(history_, settings.accumulation, now_, trust_, context);
+    return accumulate(history_, settings.accumulation, albedos, now_, trust_, context);
 }
 
 bool Signal::filter(const Guides& guides, const Settings& settings, bool feedback, Report& report,

@@ -29,6 +29,7 @@ class Signal {
   public:
     // State that the film is written to: colour, mean luminance, variance of one sample, age = samples.
     State& now() { return now_; }
+    const State& now() const { return now_; }
     void fit(std::uint32_t width, std::uint32_t height);
     // A new film starts: the current state becomes history.
     void restart();
@@ -37,7 +38,7 @@ class Signal {
 
     // Reprojects the history to this picture and blends it in. False: stopped, as in the next ones.
     bool blend_history(const Guides& now, const Guides& before, const Motion& motion,
-                       const Settings& settings, Report& report, RunContext& context);
+                       const Settings& settings, const Albedos& albedos, Report& report, RunContext& context);
     // Variance and all levels; afterwards filtered() is the picture. Feedback is only used with a history.
     bool filter(const Guides& guides, const Settings& settings, bool feedback, Report& report,
                 RunContext& context);
