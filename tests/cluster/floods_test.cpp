@@ -172,7 +172,7 @@ TEST_F(Floods, ViewersOpenFewAndModerateViews) {
     EXPECT_TRUE(requester.accepts(view_request(10, 128, 16))) << "one of them may change";
 }
 
-// The film of such a view takes 10 MiB, and what psvgf keeps several times as much.
+// The film of such a view takes 8 MiB, and what psvgf keeps several times as much.
 TEST(ViewFloods, ViewsWhoseDenoisersDoNotFitIntoMemoryAreRefused) {
     LoopbackCluster cluster([](master::MasterSettings& settings) { settings.memory_limit = 64u << 20; });
     const auto ann = cluster.member("ann", std::make_shared<scene::BlobStore>(), net::Role::Operator);
@@ -181,16 +181,16 @@ TEST(ViewFloods, ViewsWhoseDenoisersDoNotFitIntoMemoryAreRefused) {
     bob.send(wire::JoinScene{.title = "test", .name = "bob"});
     ASSERT_TRUE(bob.wait_for<wire::SceneJoined>());
     ViewRequester requester{bob};
-    EXPECT_EQ(requester.problem(view_request(1, 256, 4, "psvgf")), "");
-    const std::string problem = requester.problem(view_request(2, 256, 4, "psvgf"));
+    EXPECT_EQ(requester.problem(view_request(1, 240, 4, "psvgf")), "");
+    const std::string problem = requester.problem(view_request(2, 240, 4, "psvgf"));
     EXPECT_TRUE(problem.starts_with("the master has no room for the film and the denoiser of this view"))
         << problem;
     EXPECT_NE(problem.find("close views"), std::string::npos) << problem;
-    EXPECT_EQ(requester.problem(view_request(2, 256, 4, "none")), "") << "without a denoiser it fits";
-    EXPECT_EQ(requester.problem(view_request(1, 256, 8, "psvgf:levels=5")), "") << "it replaces the first";
-    EXPECT_NE(requester.problem(view_request(2, 256, 4, "psvgf")), "");
-    EXPECT_EQ(requester.problem(view_request(1, 256, 4, "none")), "");
-    EXPECT_EQ(requester.problem(view_request(2, 256, 4, "psvgf")), "") << "the first has made room";
+    EXPECT_EQ(requester.problem(view_request(2, 240, 4, "none")), "") << "without a denoiser it fits";
+    EXPECT_EQ(requester.problem(view_request(1, 240, 8, "psvgf:levels=5")), "") << "it replaces the first";
+    EXPECT_NE(requester.problem(view_request(2, 240, 4, "psvgf")), "");
+    EXPECT_EQ(requester.problem(view_request(1, 240, 4, "none")), "");
+    EXPECT_EQ(requester.problem(view_request(2, 240, 4, "psvgf")), "") << "the first has made room";
 
     const auto problem_of_filter = [&](const char* filter) -> std::string {
         try {
