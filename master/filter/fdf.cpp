@@ -73,10 +73,10 @@ class Fdf final : public Filter {
 
   private:
     // The samples' noise is also in the shading, so that the filter follows it more than its own weight says: a pixel
-    // that happened to be bright looks similar to brighter ones. How much is measured by another run, in some rows,
+    // that happened to be bright looks similar to brighter ones. How much is measured by another run, in an eighth of them,
     // with noise of random sign added to both.
     void prepare_probe(const Inputs& inputs, RunContext& context) {
-        for (Planes* planes : {&signs_, &moved_, &moved_too_, &change_, &response_})
+        for (Planes* planes : {&signs_, &moved_, &moved_filtered_, &change_, &response_})
             shape(*planes, inputs, 1);
         for_rows(context, inputs.height, [&](std::uint32_t y) {
             float *signs = signs_.row(0, y), *moved = moved_.row(0, y);
@@ -148,14 +148,14 @@ class Fdf final : public Filter {
         const std::span<const float> light = inputs.mean(Channel::ShadingFeature).plane(0);
         const std::size_t step =
             (inputs.pixel_count() / Most + 1) | 1;  // odd: does not alias with even widths
-        some_.clear();
-        some_.reserve(Most);
+        surfaces_.clear();
+        surfaces_.reserve(Most);
         for (std::size_t i = 0; i < inputs.pixel_count(); i += step) {
-            if (classes_.plane(0)[i] == Surface && light[i] > 0.0f) some_.push_back(light[i]);
+            if (classes_.plane(0)[i] == Surface && light[i] > 0.0f) surfaces_.push_back(light[i]);
         }
-        if (some_.empty()) return std::numeric_limits<float>::infinity();
-        const auto middle = some_.begin() + static_cast<std::ptrdiff_t>(some_.size() / 2);
-        std::ranges::nth_element(some_, middle);
+        if (surfaces_.empty()) return std::numeric_limits<float>::infinity();
+        const auto middle = surfaces_.begin() + static_cast<std::ptrdiff_t>(surfaces_.size() / 2);
+        std::ranges::nth_element(surfaces_, middle);
         return *middle;
     }
 
@@ -192,7 +192,7 @@ class Fdf final : public Filter {
                                    .k = static_cast<float>(values[K])};
         if (!probes_) return nl_means_.run(shading_, variance_, classes_, settings, filtered_, context);
         return nl_means_.run(shading_, variance_, classes_, settings, filtered_, context, &moved_,
-                             &moved_too_);
+                             &moved_filtered_);
     }
 
     bool filter(const Inputs& inputs, const Values& values, Output& out, Report& report,
@@ -206,7 +206,7 @@ class Fdf final : public Filter {
             .demodulation = values[Demodulate] != 0.0 ? Demodulation::On : Demodulation::Off};
         {
             PassTimer timer(report, "bilateral", 4.0 * (6 + 3 + 2 * components + 1 + (probes_ ? 6 : 0)));
-            const Probe probe{signs_, prefiltered_ ? moved_too_ : moved_, change_, response_};
+            const Probe probe{signs_, prefiltered_ ? moved_filtered_ : moved_, change_, response_};
             if (!bilateral_.run(inputs, prefiltered_ ? filtered_ : shading_, classes_, settings, out.picture,
                                 self_, context, probes_ ? &probe : nullptr)) {
                 return false;
@@ -245,12 +245,12 @@ class Fdf final : public Filter {
         std::size_t holes = 0;
     };
     std::vector<RowSum> sums_;
-    std::vector<float> some_;
+    std::vector<float> surfaces_;  // whose median is taken
     Planes classes_, shading_, variance_, filtered_, self_;
     std::vector<std::uint32_t> ids_;
     bool prefiltered_ = false, probes_ = false;
-    Planes signs_, moved_, moved_too_, change_,
-        response_;  // of the probe; moved_: the shading, and prefiltered
+    // Of the probe: the changes of the shading, and of the prefiltered one, and those of the picture.
+    Planes signs_, moved_, moved_filtered_, change_, response_;
     SelfWeight self_weight_;
     std::size_t holes_ = 0;
     NlMeans nl_means_;

@@ -22,7 +22,11 @@ Command bench_command(cli::CommandLine& program) {
         live_command(line),     pictures_command(line),    variance_command(line)};
     return {"bench", [commands](std::string_view chosen) {
                 const auto command = std::ranges::find(commands, chosen, &Command::name);
-                return command->run(chosen);
+                try {
+                    return command->run(chosen);
+                } catch (const Error& error) {
+                    return report_error(command->name, exit_code(error.code()), error.what());
+                }
             }};
 }
 

@@ -108,7 +108,7 @@ class Stage:
         return self._start("render", SCENE, "--size", SIZE, "--spp", SPP, "-o", self._programs.scratch / "slow.exr")
 
     def start_watch(self):
-        # As sampled: --memory does not limit denoisers, whose memory grows until each size of picture has been made twice.
+        # As sampled: what a denoiser keeps grows until each size of picture has been made twice.
         return self._start("watch", "--size", SIZE, "--spp", "16", "--denoise=none", "-o", self._programs.scratch / "slow.png")
 
     def _start(self, command, *words):

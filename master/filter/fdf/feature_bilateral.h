@@ -17,8 +17,8 @@ struct FeatureSettings {
 inline constexpr std::uint32_t FeatureMaxRadius = 16;
 
 // A change of all pixels at once, and what it does to the picture: the change of colour is the standard deviation of
-// each component times the sign, that of the shading is given, and both are scaled by a small step. The response is
-// measured in half of one of ProbeSpacing rows and divided by the step.
+// each component times the sign, that of the shading is given, and both are scaled by a small step. The response,
+// divided by the step, is measured in half of the pixels of every ProbeSpacing-th row.
 struct Probe {
     const Planes &signs, &shading;  // 1 component; +1 or -1; a change at full scale
     Planes &change, &response;      // 1 component: summed over r, g, b, and 0 where not measured

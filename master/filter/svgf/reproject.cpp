@@ -216,10 +216,7 @@ class Lookup {
     std::int32_t width_, height_;
 };
 
-}  // namespace
-
-namespace {
-
+// Whether a surface is among those of the 3x3 pixels around (x, y).
 bool shows(const std::vector<std::uint32_t>& ids, std::uint32_t width, std::uint32_t height, std::uint32_t x,
            std::uint32_t y, std::uint32_t id) {
     for (std::uint32_t ty = y > 0 ? y - 1 : 0; ty <= std::min(y + 1, height - 1); ++ty) {
@@ -230,6 +227,7 @@ bool shows(const std::vector<std::uint32_t>& ids, std::uint32_t width, std::uint
     return false;
 }
 
+// Of a still picture.
 void copy_row(const Guides& now, const Guides& before, std::span<const HistoryView> from, std::uint32_t y,
               Planes& to) {
     const std::uint32_t width = to.width(), height = to.height();

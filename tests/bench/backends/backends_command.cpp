@@ -77,13 +77,7 @@ Command backends_command(cli::CommandLine& bench) {
         {"tessera bench backends --scenes cornell,balls:1000000",
          "tessera bench backends --scenes room.glb --size 640x360 --repeat 9 -o backends.csv",
          "tessera bench backends --device nvidia --rays 4000000 --size 1280x720 --scenes balls:1000000"});
-    return {BackendsName, [options](std::string_view) {
-                try {
-                    return run(*options);
-                } catch (const Error& error) {
-                    return report_error(BackendsName, exit_code(error.code()), error.what());
-                }
-            }};
+    return {BackendsName, [options](std::string_view) { return run(*options); }};
 }
 
 }  // namespace tessera::tools::bench

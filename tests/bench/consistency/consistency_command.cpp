@@ -8,11 +8,10 @@
 
 #include "client/tools/host_info.h"
 #include "client/tools/interrupts.h"
-#include "client/tools/progress_line.h"
 #include "master/filter/catalog.h"
 #include "tests/bench/consistency/consistency_bench.h"
 #include "tests/bench/filters/plan.h"
-#include "tests/bench/scenes/scenes.h"
+#include "tests/bench/scene_loop.h"
 
 namespace tessera::tools::bench {
 
@@ -107,36 +106,31 @@ int run(const ConsistencyOptions& options) {
     tbb::task_arena arena(static_cast<int>(plan->jobs));
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
     std::vector<std::string> broken;
-    for (const std::string& name : plan->scenes) {
-        const auto scene = load_scene(name, plan->assets);
-        if (!scene) throw scene.error();
-        std::optional<ConsistencyScene> measured;
-        {
-            ProgressLine line;
-            const BenchProgress progress{
-                [&](const std::string& text) { line.show(text); },
-                [](const std::string& text) { std::cerr << "tessera bench: " << text << "\n"; }};
-            measured = measure_consistency(*scene, *plan, arena, progress, interrupts.token());
-            line.show("");
-        }
-        if (!measured)
-            return report_error(ConsistencyName, ExitInterrupted,
-                                "interrupted before all scenes were measured; finished references are kept");
-        for (std::string& line : broken_promises(*measured)) broken.push_back(std::move(line));
-        if (options.json) {
-            all.push_back(as_json(*measured));
-        } else {
-            print(*measured);
-            std::fflush(stdout);
-        }
-    }
+    const bool done = measure_each(
+        plan->scenes, plan->assets,
+        [&](const BenchScene& scene, const BenchProgress& progress) {
+            return measure_consistency(scene, *plan, arena, progress, interrupts.token());
+        },
+        [&](const ConsistencyScene& measured) {
+            for (std::string& line : broken_promises(measured)) broken.push_back(std::move(line));
+            if (options.json) {
+                all.push_back(as_json(measured));
+            } else {
+                print(measured);
+                std::fflush(stdout);
+            }
+        });
+    if (!done)
+        return report_error(ConsistencyName, ExitInterrupted,
+                            "interrupted before all scenes were measured; finished references are kept");
     if (options.json) std::cout << all.dump(1) << "\n";
     if (!options.json && !broken.empty()) {
         std::cout << "\nNot as promised:\n";
         for (const std::string& line : broken) std::cout << "  " << line << "\n";
     }
     if (options.check && !broken.empty())
-        return report_error(ConsistencyName, 1, std::to_string(broken.size()) + " promises are not kept");
+        return report_error(ConsistencyName, ExitComparison,
+                            std::to_string(broken.size()) + " promises are not kept");
     return 0;
 }
 
@@ -166,13 +160,7 @@ Command consistency_command(cli::CommandLine& bench) {
     line.examples(
         {"tessera bench consistency",
          "tessera bench consistency --scenes grids,room-1 --filters fdf,psvgf --spp 4,16,64 --seeds 4"});
-    return {ConsistencyName, [options](std::string_view) {
-                try {
-                    return run(*options);
-                } catch (const Error& error) {
-                    return report_error(ConsistencyName, exit_code(error.code()), error.what());
-                }
-            }};
+    return {ConsistencyName, [options](std::string_view) { return run(*options); }};
 }
 
 }  // namespace tessera::tools::bench

@@ -72,13 +72,7 @@ Command filters_command(cli::CommandLine& bench) {
     filters.examples(
         {"tessera bench filters --quick", "tessera bench filters -o bench",
          "tessera bench filters --scenes cornell,grids --filters gauss:sigma=1,gauss:sigma=4 --spp 4,16"});
-    return {FiltersName, [options](std::string_view) {
-                try {
-                    return run_filters(*options);
-                } catch (const Error& error) {
-                    return report_error(FiltersName, exit_code(error.code()), error.what());
-                }
-            }};
+    return {FiltersName, [options](std::string_view) { return run_filters(*options); }};
 }
 
 }  // namespace tessera::tools::bench

@@ -242,13 +242,7 @@ Command pictures_command(cli::CommandLine& bench) {
     line.flag("--json", "print one JSON object", options->json);
     line.examples({"tessera bench pictures room.glb --requests 100 --size 400x400 --budget 800ms",
                    "tessera bench pictures room.glb --requests 20 --size 800x800 --budget 5s --json"});
-    return {"bench pictures", [options](std::string_view) {
-                try {
-                    return PicturesBench(*options).run();
-                } catch (const Error& error) {
-                    return report_error("bench", exit_code(error.code()), error.what());
-                }
-            }};
+    return {"bench pictures", [options](std::string_view) { return PicturesBench(*options).run(); }};
 }
 
 }  // namespace tessera::tools::bench

@@ -112,13 +112,7 @@ Command displays_command(cli::CommandLine& bench) {
     line.flag("--json", "print one JSON object instead of the table", options->json);
     line.examples(
         {"tessera bench displays", "tessera bench displays --columns 3 --rows 2 --seconds 5 --no-wall"});
-    return {DisplaysName, [options](std::string_view) {
-                try {
-                    return run(*options);
-                } catch (const Error& error) {
-                    return report_error(DisplaysName, exit_code(error.code()), error.what());
-                }
-            }};
+    return {DisplaysName, [options](std::string_view) { return run(*options); }};
 }
 
 }  // namespace tessera::tools::bench

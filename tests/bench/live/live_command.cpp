@@ -122,13 +122,7 @@ Command live_command(cli::CommandLine& bench) {
     line.examples({"tessera bench live",
                    "tessera bench live --nodes 1 --size 640x360 --edits 30 --seconds 10",
                    "tessera bench live --scene room.glb --json > live.json"});
-    return {LiveName, [options](std::string_view) {
-                try {
-                    return run(*options);
-                } catch (const Error& error) {
-                    return report_error(LiveName, exit_code(error.code()), error.what());
-                }
-            }};
+    return {LiveName, [options](std::string_view) { return run(*options); }};
 }
 
 }  // namespace tessera::tools::bench

@@ -8,9 +8,8 @@
 
 #include "client/tools/host_info.h"
 #include "client/tools/interrupts.h"
-#include "client/tools/progress_line.h"
 #include "tests/bench/filters/plan.h"
-#include "tests/bench/scenes/scenes.h"
+#include "tests/bench/scene_loop.h"
 #include "tests/bench/variance/variance_bench.h"
 
 namespace tessera::tools::bench {
@@ -81,26 +80,21 @@ int run(const VarianceOptions& options) {
     if (!plan) return report_error(VarianceName, cli::ExitUsage, plan.error().what());
     tbb::task_arena arena(static_cast<int>(plan->jobs));
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
-    for (const std::string& name : plan->scenes) {
-        const auto scene = load_scene(name, plan->assets);
-        if (!scene) throw scene.error();
-        std::optional<VarianceScene> measured;
-        {
-            ProgressLine line;
-            const BenchProgress progress{[&](const std::string& text) { line.show(text); },
-                                         [](const std::string&) {}};
-            measured = measure_variances(*scene, *plan, arena, progress, interrupts.token());
-            line.show("");
-        }
-        if (!measured)
-            return report_error(VarianceName, ExitInterrupted, "interrupted before all scenes were measured");
-        if (options.json) {
-            all.push_back(as_json(*measured));
-        } else {
-            print(*measured);
-            std::fflush(stdout);
-        }
-    }
+    const bool done = measure_each(
+        plan->scenes, plan->assets,
+        [&](const BenchScene& scene, const BenchProgress& progress) {
+            return measure_variances(scene, *plan, arena, progress, interrupts.token());
+        },
+        [&](const VarianceScene& measured) {
+            if (options.json) {
+                all.push_back(as_json(measured));
+            } else {
+                print(measured);
+                std::fflush(stdout);
+            }
+        });
+    if (!done)
+        return report_error(VarianceName, ExitInterrupted, "interrupted before all scenes were measured");
     if (options.json) std::cout << all.dump(1) << "\n";
     return 0;
 }
@@ -128,13 +122,7 @@ Command variance_command(cli::CommandLine& bench) {
     line.flag("--json", "print one JSON array instead of the tables", options->json);
     line.examples({"tessera bench variance --scenes grids,room-1",
                    "tessera bench variance --scenes product.glb --spp 16,1024 --seeds 12 --json"});
-    return {VarianceName, [options](std::string_view) {
-                try {
-                    return run(*options);
-                } catch (const Error& error) {
-                    return report_error(VarianceName, exit_code(error.code()), error.what());
-                }
-            }};
+    return {VarianceName, [options](std::string_view) { return run(*options); }};
 }
 
 }  // namespace tessera::tools::bench
