@@ -47,10 +47,11 @@ std::optional<int> parse_options(int argc, const char* const* argv, MasterOption
                 options.heartbeat_seconds);
     line.option("--blob-quota", "MiB of meshes and textures that the master holds for the clients of one key",
                 options.blob_quota_mib);
-    line.option("--memory",
-                "MiB for films, meshes, textures and what waits to be sent; views and edits beyond it are "
-                "refused (default: three quarters of this machine's)",
-                options.memory_mib);
+    line.option(
+        "--memory",
+        "MiB for films, denoisers, meshes, textures and what waits to be sent; views and edits beyond it are "
+        "refused (default: three quarters of this machine's)",
+        options.memory_mib);
     line.option("--io-threads",
                 "threads that encrypt and send; one does about 600 MB/s: more for many fast nodes",
                 options.io_threads);

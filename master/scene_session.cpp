@@ -238,7 +238,10 @@ void SceneSession::handle(SessionRecord& session, const wire::ReadWriters& reque
 void SceneSession::handle(SessionRecord& session, const wire::SetViewFilter& request, TimePoint now) {
     wire::RequestDone done{.request = request.request, .accepted = true, .text = {}};
     try {
-        done.text = views_.set_filter(session, request.view, request.filter, now);
+        const auto room_problem = [this](const session::ViewRequest& completed, ViewId replaced) {
+            return memory_problem(completed, replaced);
+        };
+        done.text = views_.set_filter(session, request.view, request.filter, room_problem, now);
     } catch (const Error& error) {
         done = {.request = request.request,
                 .accepted = false,

@@ -11,6 +11,7 @@
 #include "master/job_store.h"
 #include "master/peers/node_table.h"
 #include "master/peers/session_table.h"
+#include "master/render/view_memory.h"
 #include "master/render/views.h"
 #include "master/scene/authority_thread.h"
 #include "master/scene/blob_collector.h"
@@ -89,10 +90,9 @@ class SceneSession {
     }
     SceneDistributor& distributor() { return distributor_; }
     const SceneDistributor& distributor() const { return distributor_; }
-    MemoryUse memory(std::optional<ViewId> replaced = std::nullopt) const;
-    // Why the master has no room for so many more bytes of `what`; "" = it has. `replaced`: a view that goes for it.
-    std::string memory_problem(std::uint64_t bytes, const std::string& what,
-                               std::optional<ViewId> replaced = std::nullopt) const;
+    MemoryUse memory() const { return memory_with(view_memory()); }
+    // Why the master has no room for so many more bytes of `what`; "" = it has.
+    std::string memory_problem(std::uint64_t bytes, const std::string& what) const;
     BlobCollector& collector() { return collector_; }
     Views& views() { return views_; }
     const Views& views() const { return views_; }
@@ -185,6 +185,10 @@ class SceneSession {
     void keep_journal(TimePoint now);
     void write_saved_views(TimePoint now);
     // "" or why the view cannot be opened.
+    ViewMemory view_memory(std::optional<ViewId> left_out = std::nullopt) const;
+    MemoryUse memory_with(const ViewMemory& views) const;
+    // Why there is no room for this view. `replaced`: a view that goes for it.
+    std::string memory_problem(const session::ViewRequest& completed, std::optional<ViewId> replaced) const;
     std::string view_problem(const SessionRecord& session, std::uint64_t number,
                              const session::ViewRequest& wanted) const;
     void open_view(SessionId session, const wire::RequestView& request, TimePoint now);

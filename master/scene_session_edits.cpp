@@ -242,9 +242,9 @@ std::string SceneSession::view_problem(const SessionRecord& session, std::uint64
     }
     if (std::string problem = problem_of(wanted); !problem.empty()) return problem;
     if (std::string problem = viewer_problem(session, number, wanted); !problem.empty()) return problem;
-    view::View completed = wanted.view;
-    complete(completed);
-    return memory_problem(film_bytes(completed), "the film of this view", views_.watched(session.id, number));
+    session::ViewRequest completed = wanted;
+    complete(completed.view);
+    return memory_problem(completed, views_.watched(session.id, number));
 }
 
 void SceneSession::open_view(SessionId id, const wire::RequestView& request, TimePoint now) {

@@ -64,17 +64,29 @@ std::string MemoryUse::problem(std::uint64_t bytes, const std::string& what) con
            " MiB are used; close views, remove objects, or start it with a larger --memory";
 }
 
-MemoryUse SceneSession::memory(std::optional<ViewId> replaced) const {
-    std::uint64_t used = services_.blobs->byte_size() + services_.outbox.waiting_bytes();
+ViewMemory SceneSession::view_memory(std::optional<ViewId> left_out) const {
+    ViewMemory views;
     for (const auto& [id, view] : views_.table().all()) {
-        if (id != replaced) used += film_bytes(view.request.view);
+        if (id != left_out) views.add(view.request);
     }
-    return {used, memory_limit_};
+    return views;
 }
 
-std::string SceneSession::memory_problem(std::uint64_t bytes, const std::string& what,
+MemoryUse SceneSession::memory_with(const ViewMemory& views) const {
+    return {services_.blobs->byte_size() + services_.outbox.waiting_bytes() + views.bytes(), memory_limit_};
+}
+
+std::string SceneSession::memory_problem(std::uint64_t bytes, const std::string& what) const {
+    return memory().problem(bytes, what);
+}
+
+std::string SceneSession::memory_problem(const session::ViewRequest& completed,
                                          std::optional<ViewId> replaced) const {
-    return memory(replaced).problem(bytes, what);
+    ViewMemory views = view_memory(replaced);
+    const MemoryUse before = memory_with(views);
+    const std::uint64_t bytes_before = views.bytes();
+    views.add(completed);
+    return before.problem(views.bytes() - bytes_before, "the film and the denoiser of this view");
 }
 
 void SceneSession::handle(SessionRecord& session, wire::SetPresence request, TimePoint now) {

@@ -75,6 +75,7 @@ FilterEntry bilateral_entry() {
     return {{.name = "bilateral",
              .summary = "cross-bilateral filter: Gaussian weights of albedo, normal and depth",
              .source = "Eisemann 2004",
+             .bytes_per_pixel = 72,
              .parameters =
                  {{"sigma", "px", "spatial standard deviation", 3.0, 0.1, 16.0, {}},
                   {"sigma_albedo", "", "standard deviation in albedo", 0.05, 1e-3, 1e3, {}},

@@ -19,7 +19,8 @@ namespace tessera::filter {
 //     out = F + sum_j (1 - w_j) d_j        w_j = sum N_j / (sum N_j + B_j)        over (2 radius + 1)^2 pixels
 //
 // N_j is the variance of d_j / S due to noise: that of the mean of U times 1 - a, where a is the weight that F gives to
-// the pixel itself (0 where unknown), times what smoothing leaves of independent noise. B_j is the squared bias of F:
+// the pixel itself (0 where unknown; exactly, 2 a minus the sum of all squared weights, the same if those are equal),
+// times what smoothing leaves of independent noise. B_j is the squared bias of F:
 // what (d_j / S)^2 exceeds N_j by. With one band this is the shrinkage of James and Stein with pooled variance, whose
 // error is least at w = E[(U - T)(U - F)] / E[(U - F)^2]. Noise is mostly in the fine band, the bias of a denoiser in the
 // coarse one; so the coarse band corrects the bias and its loss of light with little of the noise of U, and the fine
@@ -51,6 +52,7 @@ namespace tessera::filter {
 //     three                      0.41 (1.3)    0.65 (16)     0.69 (16)     0.51 (1.6)    0.50 (5.2)
 //     and rare light             0.40 (1.3)    0.44 (1.2)    0.48 (1.0)    0.50 (1.6)    0.38 (1.0)
 //     and d_0 relative           0.38 (1.4)    0.44 (1.2)    0.48 (1.0)    0.47 (1.6)    0.36 (1.0)
+//     and a of psvgf                                                       0.44 (1.05)
 class ConvergenceBlend {
   public:
     static constexpr std::uint32_t MaxRadius = 15;

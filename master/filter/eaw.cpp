@@ -118,6 +118,7 @@ FilterEntry eaw_entry() {
     return {{.name = "eaw",
              .summary = "edge-avoiding a-trous wavelets, guided by colour, normal and depth",
              .source = "Dammertz 2010",
+             .bytes_per_pixel = 116,
              .parameters =
                  {{"levels", "", "levels; the taps of level i are 2^i pixels apart", 5, 0, 8, {}},
                   {"sigma_color",

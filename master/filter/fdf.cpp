@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <span>
 
 #include "master/filter/convergence_blend.h"
 #include "master/filter/fdf/feature_bilateral.h"
 #include "master/filter/fdf/nl_means.h"
 #include "master/filter/kernels.h"
+#include "master/filter/self_weight.h"
 #include "master/filter/svgf/hole_fill.h"
+#include "mediator/base/random.h"
 
 namespace tessera::filter {
 
@@ -59,6 +63,7 @@ class Fdf final : public Filter {
         for (Planes* planes : {&classes_, &shading_, &variance_, &filtered_, &self_}) {
             shape(*planes, inputs, 1);
         }
+        probes_ = values[UseConvergenceBlend] != 0.0 && inputs.has(Channel::ShadingFeature);
         shape(out.picture, inputs, components);
         report.stopped = !prepare(inputs, report, context) || !prefilter(inputs, values, report, context) ||
                          !filter(inputs, values, out, report, context) ||
@@ -67,13 +72,28 @@ class Fdf final : public Filter {
     }
 
   private:
-    // Classes, and the shading feature and its variance in units of the mean over surfaces.
+    // The samples' noise is also in the shading, so that the filter follows it more than its own weight says: a pixel
+    // that happened to be bright looks similar to brighter ones. How much is measured by another run, in some rows,
+    // with noise of random sign added to both.
+    void prepare_probe(const Inputs& inputs, RunContext& context) {
+        for (Planes* planes : {&signs_, &moved_, &moved_too_, &change_, &response_})
+            shape(*planes, inputs, 1);
+        for_rows(context, inputs.height, [&](std::uint32_t y) {
+            float *signs = signs_.row(0, y), *moved = moved_.row(0, y);
+            const float* variance = variance_.row(0, y);
+            for (std::uint32_t x = 0; x < inputs.width; ++x) {
+                signs[x] = mix(std::uint64_t{y} << 32 | x) & 1 ? 1.0f : -1.0f;
+                moved[x] = signs[x] * std::sqrt(variance[x]);
+            }
+        });
+    }
+
+    // Classes, and the shading feature and its variance in units of its mean.
     bool prepare(const Inputs& inputs, Report& report, RunContext& context) {
-        PassTimer timer(report, "features", 36.0);
+        PassTimer timer(report, "features", 44.0);
         const bool has_alpha = inputs.has(Channel::Alpha), has_depth = inputs.has(Channel::Depth);
         const bool has_shading = inputs.has(Channel::ShadingFeature);
         if (!has_shading) report.notes.push_back("no shading feature: shadows are not preserved");
-        const Planes& light = inputs.mean(Channel::ShadingFeature);
         sums_.assign(inputs.height, {});
         const bool done = for_rows(context, inputs.height, [&](std::uint32_t y) {
             const float* counts = inputs.counts.row(0, y);
@@ -85,8 +105,31 @@ class Fdf final : public Filter {
                                              : true;
                 classes[x] = counts[x] == 0.0f ? Hole : hit ? Surface : Background;
                 sum.holes += counts[x] == 0.0f;
-                if (classes[x] != Surface || !has_shading) continue;
-                sum.light += light.row(0, y)[x];
+            }
+            sums_[y] = sum;
+        });
+        holes_ = 0;
+        for (const RowSum& row : sums_) holes_ += row.holes;
+        return done && has_shading ? normalise(inputs, mean_shading(inputs, context), context) : done;
+    }
+
+    // Over surfaces without directly seen lamps, whose own emission is no shading: a small one that is far
+    // brighter than the room would make every difference in it look small, and shadows would be blurred. A
+    // single sample that found much light is as bright, but its variance shows it. Windows of interiors have 20 to
+    // 200 times the median: leaving them out keeps more specks.
+    double mean_shading(const Inputs& inputs, RunContext& context) {
+        constexpr float Brighter = 200.0f, Certain = 1.0f / 16.0f;
+        const float most = Brighter * median_shading(inputs);
+        for_rows(context, inputs.height, [&](std::uint32_t y) {
+            const float* light = inputs.mean(Channel::ShadingFeature).row(0, y);
+            const float* variance = inputs.variance(Channel::ShadingFeature).row(0, y);
+            const float *counts = inputs.counts.row(0, y), *classes = classes_.row(0, y);
+            RowSum sum;
+            for (std::uint32_t x = 0; x < inputs.width; ++x) {
+                const float s = light[x];
+                const bool lamp = s > most && counts[x] >= 2.0f && variance[x] < Certain * s * s;
+                if (classes[x] != Surface || lamp) continue;
+                sum.light += s;
                 sum.count += 1.0;
             }
             sums_[y] = sum;
@@ -95,11 +138,25 @@ class Fdf final : public Filter {
         for (const RowSum& row : sums_) {
             total.light += row.light;
             total.count += row.count;
-            total.holes += row.holes;
         }
-        holes_ = total.holes;
-        const double mean = total.light > 0.0 ? total.light / total.count : 1.0;
-        return done && has_shading ? normalise(inputs, std::max(mean, 1e-30), context) : done;
+        return total.light > 0.0 ? std::max(total.light / total.count, 1e-30) : 1.0;
+    }
+
+    // Of the surfaces that are not black, at about 4096 pixels. Infinite if there are none.
+    float median_shading(const Inputs& inputs) {
+        constexpr std::size_t Most = 4096;
+        const std::span<const float> light = inputs.mean(Channel::ShadingFeature).plane(0);
+        const std::size_t step =
+            (inputs.pixel_count() / Most + 1) | 1;  // odd: does not alias with even widths
+        some_.clear();
+        some_.reserve(Most);
+        for (std::size_t i = 0; i < inputs.pixel_count(); i += step) {
+            if (classes_.plane(0)[i] == Surface && light[i] > 0.0f) some_.push_back(light[i]);
+        }
+        if (some_.empty()) return std::numeric_limits<float>::infinity();
+        const auto middle = some_.begin() + static_cast<std::ptrdiff_t>(some_.size() / 2);
+        std::ranges::nth_element(some_, middle);
+        return *middle;
     }
 
     bool normalise(const Inputs& inputs, double mean, RunContext& context) {
@@ -125,6 +182,7 @@ class Fdf final : public Filter {
     }
 
     bool prefilter(const Inputs& inputs, const Values& values, Report& report, RunContext& context) {
+        if (probes_) prepare_probe(inputs, context);
         prefiltered_ = values[Prefilter] != 0.0 && inputs.has(Channel::ShadingFeature);
         if (!prefiltered_) return !context.stop.stop_requested();
         PassTimer timer(report, "nl-means", 16.0);
@@ -132,7 +190,9 @@ class Fdf final : public Filter {
                                    .radius = static_cast<std::uint32_t>(values[NlmRadius]),
                                    .patch = static_cast<std::uint32_t>(values[Patch]),
                                    .k = static_cast<float>(values[K])};
-        return nl_means_.run(shading_, variance_, classes_, settings, filtered_, context);
+        if (!probes_) return nl_means_.run(shading_, variance_, classes_, settings, filtered_, context);
+        return nl_means_.run(shading_, variance_, classes_, settings, filtered_, context, &moved_,
+                             &moved_too_);
     }
 
     bool filter(const Inputs& inputs, const Values& values, Output& out, Report& report,
@@ -145,15 +205,26 @@ class Fdf final : public Filter {
             .s_max = static_cast<float>(values[SMax]),
             .demodulation = values[Demodulate] != 0.0 ? Demodulation::On : Demodulation::Off};
         {
-            PassTimer timer(report, "bilateral", 4.0 * (6 + 3 + 2 * components + 1));
+            PassTimer timer(report, "bilateral", 4.0 * (6 + 3 + 2 * components + 1 + (probes_ ? 6 : 0)));
+            const Probe probe{signs_, prefiltered_ ? moved_too_ : moved_, change_, response_};
             if (!bilateral_.run(inputs, prefiltered_ ? filtered_ : shading_, classes_, settings, out.picture,
-                                self_, context)) {
+                                self_, context, probes_ ? &probe : nullptr)) {
                 return false;
             }
         }
         if (values[UseConvergenceBlend] == 0.0) return true;
         PassTimer timer(report, "convergence blend", ConvergenceBlend::bytes_per_pixel(components));
+        if (probes_ && !weigh_own(inputs, out.picture, context)) return false;
         return convergence_blend_.apply(inputs, Channel::Radiance, self_.plane(0), out.picture, context);
+    }
+
+    // A pixel without similar neighbours keeps its samples, whatever the pixels around it do.
+    bool weigh_own(const Inputs& inputs, const Planes& picture, RunContext& context) {
+        if (!self_weight_.run(inputs, change_.plane(0), {}, response_.plane(0), picture, context))
+            return false;
+        std::ranges::transform(self_.plane(0), self_weight_.weights(), self_.plane(0).begin(),
+                               [](float own, float measured) { return std::max(own, measured); });
+        return true;
     }
 
     bool fill_holes(const Inputs& inputs, Planes& picture, Report& report, RunContext& context) {
@@ -174,9 +245,13 @@ class Fdf final : public Filter {
         std::size_t holes = 0;
     };
     std::vector<RowSum> sums_;
+    std::vector<float> some_;
     Planes classes_, shading_, variance_, filtered_, self_;
     std::vector<std::uint32_t> ids_;
-    bool prefiltered_ = false;
+    bool prefiltered_ = false, probes_ = false;
+    Planes signs_, moved_, moved_too_, change_,
+        response_;  // of the probe; moved_: the shading, and prefiltered
+    SelfWeight self_weight_;
     std::size_t holes_ = 0;
     NlMeans nl_means_;
     FeatureBilateral bilateral_;
@@ -191,6 +266,7 @@ FilterEntry fdf_entry() {
         {.name = "fdf",
          .summary = "feature distances: albedo, normal and prefiltered shading guide a bilateral mean",
          .source = "Lardinoije 4.2",
+         .bytes_per_pixel = 184,
          .parameters =
              {{"radius", "px", "of the window", 8, 0, FeatureMaxRadius, {}},
               {"t_max", "", "difference of albedo at which the weight is 1/e", 0.03, 1e-4, 100, {}},

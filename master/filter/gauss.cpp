@@ -96,6 +96,7 @@ FilterEntry gauss_entry() {
         {.name = "gauss",
          .summary = "Gaussian blur; the baseline, not edge-preserving",
          .source = "",
+         .bytes_per_pixel = 28,
          .parameters = {{"sigma", "px", "standard deviation", 2.0, 0.1, 64.0, {}}},
          .channels = [](const Values&) { return frame::ChannelSet{frame::Channel::Radiance}; }},
         [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> { return std::make_unique<Gauss>(); }};

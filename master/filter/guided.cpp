@@ -102,6 +102,7 @@ FilterEntry guided_entry() {
         {.name = "guided",
          .summary = "guided image filter: local linear models of the picture in albedo, normal and depth",
          .source = "He 2010, Bauszat 2011",
+         .bytes_per_pixel = 144,
          .parameters =
              {{"radius", "px", "of the windows", 4, 1, 32, {}},
               {"epsilon",

@@ -7,7 +7,7 @@
 #include "master/filter/convergence_blend.h"
 #include "master/filter/moderated_variance.h"
 #include "master/filter/nfor/selection.h"
-#include "master/filter/nfor/self_weight.h"
+#include "master/filter/self_weight.h"
 #include "master/filter/svgf/hole_fill.h"
 
 namespace tessera::filter {
@@ -81,7 +81,9 @@ class Nfor final : public Filter {
                         ConvergenceBlend::bytes_per_pixel(out.picture.components()));
         std::span<const float> own;
         if (has_halves) {
-            if (!self_weight_.run(inputs, colors_, scale_, refined_.plane(Colors - 1), out.picture, context))
+            add_difference(inputs, context);
+            if (!self_weight_.run(inputs, light_.plane(0), scale_.plane(0), refined_.plane(Colors - 1),
+                                  out.picture, context))
                 return false;
             own = self_weight_.weights();
         }
@@ -184,6 +186,18 @@ class Nfor final : public Filter {
         });
     }
 
+    // The difference of the halves, summed over r, g, b, in a plane of the second pass, which is over.
+    void add_difference(const Inputs& inputs, RunContext& context) {
+        for_rows(context, inputs.height, [&](std::uint32_t y) {
+            float* to = light_.row(0, y);
+            std::fill_n(to, inputs.width, 0.0f);
+            for (std::uint32_t c = 0; c < 3; ++c) {
+                const float *one = colors_[0].row(c, y), *two = colors_[1].row(c, y);
+                for (std::uint32_t x = 0; x < inputs.width; ++x) to[x] += one[x] - two[x];
+            }
+        });
+    }
+
     // The linear model may predict values outside the valid range: light >= 0, alpha within [0, 1].
     bool combine(const Inputs& inputs, Planes& picture, RunContext& context) {
         shape(difference_, inputs, 3);
@@ -240,6 +254,7 @@ FilterEntry nfor_entry() {
         {.name = "nfor",
          .summary = "first-order regression on features, weights by NL-means of halves; slow",
          .source = "Bitterli et al. 2016",
+         .bytes_per_pixel = 610,
          .parameters = {{"radius", "px", "radius of the window of a fit", 9, 1, MaxRadius, {}},
                         {"patch", "px", "radius of the patches compared for weights", 3, 0, MaxPatch, {}},
                         {"stride", "px", "distance between the centres of fits", 1, 0, 2, {"1", "2", "4"}},

@@ -180,6 +180,7 @@ FilterEntry nlm_entry() {
     return {{.name = "nlm",
              .summary = "non-local means of the colour at several scales, by its variances",
              .source = "Buades 2005, Rousselle 2012",
+             .bytes_per_pixel = 152,
              .parameters =
                  {{"radius", "px", "of the window, at each scale", 7, 1, 20, {}},
                   {"patch", "px", "radius of the patches that are compared", 3, 0, 5, {}},

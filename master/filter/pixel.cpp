@@ -1,6 +1,7 @@
 #include "master/filter/pixel.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "master/filter/convergence_blend.h"
 #include "master/filter/kernels.h"
@@ -33,6 +34,9 @@ enum Parameters : std::size_t {
     Normals,
     Schedule,
     UseConvergenceBlend,
+    LightChoice,
+    ColorMetricChoice,
+    DepthMetricChoice,
 };
 
 float number(const Values& values, Parameters which) {
@@ -69,15 +73,15 @@ class PixelFilter final : public Filter {
   public:
     Report run(const Inputs& inputs, const Values& values, Output& out, RunContext context) override {
         Report report;
-        note_missing(inputs, report);
+        note_missing(inputs, values, report);
         shape(out.picture, inputs, inputs.color_components());
         const std::uint64_t samples = median_count(inputs.counts.plane(0));
         const bool pass = needs_pass(inputs, values, samples);
         const bool shown = pass || has_pass_;
         {
-            PassTimer timer(report, "light", 4.0 * (2 + 9));  // counts are read twice
+            PassTimer timer(report, "light", 4.0 * (3 + 9));  // counts are read three times
             holes_.find(inputs);
-            light_.prepare(inputs, holes_, context);
+            light_.prepare(inputs, holes_, static_cast<LightScope>(values[LightChoice]), context);
         }
         bool done = true;
         if (pass) {
@@ -98,8 +102,8 @@ class PixelFilter final : public Filter {
     void reset() override { has_pass_ = false; }
 
   private:
-    static void note_missing(const Inputs& inputs, Report& report) {
-        if (!inputs.has(Channel::HighVariance))
+    static void note_missing(const Inputs& inputs, const Values& values, Report& report) {
+        if (!is_on(values, LightChoice) && !inputs.has(Channel::HighVariance))
             report.notes.push_back("channel 'high_variance' is missing: all light is filtered");
         if (!inputs.has(Channel::Headlight))
             report.notes.push_back("channel 'headlight' is missing: only depth guides the filter");
@@ -117,19 +121,24 @@ class PixelFilter final : public Filter {
 
     bool filter(const Inputs& inputs, const Values& values, Report& report, RunContext& context) {
         const bool with_normals = is_on(values, Normals);
-        const auto layers = 4.0 + (inputs.has(Channel::Alpha) ? 1.0 : 0.0);
+        const auto layers =
+            4.0 + (inputs.has(Channel::Alpha) ? 1.0 : 0.0) + (light_.has_uneven_counts() ? 1.0 : 0.0);
         {
             const double guide = 2.0 * (with_normals ? 7 : 4), field = 7.0 + layers + 1.0;
             PassTimer timer(report, "guide", 4.0 * (guide + field));
             const Tolerance tolerance{number(values, SigmaColor), number(values, SigmaDepth),
-                                      with_normals ? number(values, SigmaNormal) : 0.0f};
+                                      with_normals ? number(values, SigmaNormal) : 0.0f,
+                                      static_cast<ColorMetric>(values[ColorMetricChoice]),
+                                      static_cast<DepthMetric>(values[DepthMetricChoice])};
             guide_.prepare(inputs, holes_, tolerance, context);
             light_.fill(inputs, holes_, field_, context);
-            scratch_.fit(inputs.width, inputs.height, field_.values.components());
+            scratch_.fit(inputs.width, inputs.height, field_.values.components(), field_.weighted);
         }
         if (!choose_widths(inputs, values, report, context)) return false;
         PassTimer timer(report, "filter", bytes_of_filter(values, layers));
         if (!run_method(values, context)) return false;
+        light_.divide_by_counts(inputs, holes_, field_, context);
+        if (field_.weighted) return true;  // the variance is that of one sample
         return for_rows(context, inputs.height, [&](std::uint32_t y) {
             float* variance = field_.values.row(Field::Variance, y);
             const float* n = inputs.counts.row(0, y);
@@ -186,11 +195,13 @@ class PixelFilter final : public Filter {
 
     bool blend(const Inputs& inputs, const Values& values, Report& report, Output& out, RunContext& context) {
         const std::uint32_t components = inputs.color_components();
-        PassTimer timer(report, "blend", 4.0 * (3.0 * 3 + components + 3 + components));
+        PassTimer timer(report, "blend", 4.0 * (3.0 * 3 + components + 3 + components + 1));
         const Blend how{number(values, Threshold), static_cast<Root>(values[RootChoice]),
                         number(values, SpikeClamp)};
         BlendMaps maps;
         if (out.wants_maps) maps = prepare_maps(inputs, out);
+        shape(self_weight_, inputs, 1);
+        maps.self_weight = &self_weight_;
         return compose(inputs, light_, field_, how, out.picture, maps, context);
     }
 
@@ -198,8 +209,8 @@ class PixelFilter final : public Filter {
     bool blend_converged(const Inputs& inputs, Report& report, Output& out, RunContext& context) {
         PassTimer timer(report, "convergence blend",
                         ConvergenceBlend::bytes_per_pixel(inputs.color_components()));
-        const Channel noisy = inputs.has(Channel::HighVariance) ? Channel::HighVariance : Channel::Radiance;
-        return convergence_blend_.apply(inputs, noisy, {}, out.picture, context);
+        return convergence_blend_.apply(inputs, light_.channel(), self_weight_.plane(0), out.picture,
+                                        context);
     }
 
     BlendMaps prepare_maps(const Inputs& inputs, Output& out) const {
@@ -211,8 +222,7 @@ class PixelFilter final : public Filter {
             shape(out.maps[i].planes, inputs, i == 0 ? 3 : 1);
         }
         if (inputs.has(Channel::Headlight)) out.maps[0].planes = inputs.mean(Channel::Headlight);
-        const Channel high = inputs.has(Channel::HighVariance) ? Channel::HighVariance : Channel::Radiance;
-        const Planes& variance = inputs.variance(high);
+        const Planes& variance = inputs.variance(light_.channel());
         for (std::size_t i = 0; i < inputs.pixel_count(); ++i) {
             out.maps[1].planes.plane(0)[i] =
                 luminance_variance(variance.plane(0)[i], variance.plane(1)[i], variance.plane(2)[i]);
@@ -231,6 +241,7 @@ class PixelFilter final : public Filter {
         return true;
     }
 
+    Planes self_weight_;  // in the blended picture
     Holes holes_;
     Light light_;
     Guide guide_;
@@ -246,64 +257,54 @@ class PixelFilter final : public Filter {
     std::uint64_t samples_ = 0;
 };
 
+Parameter one_of(std::string_view name, std::string_view meaning, double initial,
+                 std::vector<std::string_view> names) {
+    const auto last = static_cast<double>(names.size() - 1);
+    return {name, "", meaning, initial, 0, last, std::move(names)};
+}
+
 std::vector<Parameter> pixel_parameters() {
-    return {{"t",
-             "",
-             "accepted perceived variance (0.01: a deviation of a tenth of the surrounding light)",
-             0.01,
-             1e-6,
-             10.0,
-             {}},
-            {"sigma_s", "px", "standard deviation of the spatial kernel", 8.0, 0.5, 32.0, {}},
-            {"sigma_c", "", "standard deviation in headlight colour", 0.02, 1e-4, 10.0, {}},
-            {"sigma_d", "m", "standard deviation in depth", 2.0, 1e-6, 1e9, {}},
-            {"sigma_n", "", "standard deviation of the difference of normals", 0.2, 1e-3, 10.0, {}},
-            {"method",
-             "",
-             "separable: fast; brute: brute force, the reference; atrous: three sparse iterations",
-             0,
-             0,
-             2,
-             {"separable", "brute", "atrous"}},
-            {"iterations", "", "of the separable method", 3, 1, 5, {}},
-            {"root",
-             "",
-             "blend factor without or with the covariance of both pictures",
-             1,
-             0,
-             1,
-             {"simple", "covariance"}},
-            {"adaptive", "", "kernel widths per pixel by variance (not atrous)", 1, 0, 1, {"off", "on"}},
-            {"adaptive_clamp", "", "widths within this factor of sigma_s / sqrt(n)", 4.0, 1.0, 64.0, {}},
-            {"spike_clamp",
-             "",
-             "unfiltered light within this factor of the filtered; 0: no clamp",
-             2.0,
-             0.0,
-             1e6,
-             {}},
-            {"aa_recovery",
-             "",
-             "reconstruct antialiased edges as a mixture of both sides (separable only)",
-             1,
-             0,
-             1,
-             {"off", "on"}},
-            {"normals", "", "use normals as an additional guide", 0, 0, 1, {"off", "on"}},
-            {"schedule",
-             "",
-             "filter only at 4, 8, 16, ... samples; only blend in between",
-             0,
-             0,
-             1,
-             {"off", "on"}},
-            {"blend",
-             "",
-             "blend back to the samples where filtering would increase the error",
-             1,
-             0,
-             1,
-             {"off", "on"}}};
+    return {
+        {"t",
+         "",
+         "accepted perceived variance (0.01: a deviation of a tenth of the surrounding light)",
+         0.01,
+         1e-6,
+         10.0,
+         {}},
+        {"sigma_s", "px", "standard deviation of the spatial kernel", 8.0, 0.5, 32.0, {}},
+        {"sigma_c", "", "standard deviation in headlight colour", 0.02, 1e-4, 10.0, {}},
+        {"sigma_d", "m", "standard deviation in depth", 2.0, 1e-6, 1e9, {}},
+        {"sigma_n", "", "standard deviation of the difference of normals", 0.2, 1e-3, 10.0, {}},
+        one_of("method",
+               "separable: fast; brute: brute force, the reference; atrous: three sparse iterations", 0,
+               {"separable", "brute", "atrous"}),
+        {"iterations", "", "of the separable method", 3, 1, 5, {}},
+        one_of("root", "blend factor without or with the covariance of both pictures", 1,
+               {"simple", "covariance"}),
+        one_of("adaptive", "kernel widths per pixel by variance (not atrous)", 1, {"off", "on"}),
+        {"adaptive_clamp", "", "widths within this factor of sigma_s / sqrt(n)", 4.0, 1.0, 64.0, {}},
+        {"spike_clamp",
+         "",
+         "unfiltered light within this factor of the filtered; 0: no clamp",
+         2.0,
+         0.0,
+         1e6,
+         {}},
+        one_of("aa_recovery", "reconstruct antialiased edges as a mixture of both sides (separable only)", 1,
+               {"off", "on"}),
+        one_of("normals", "use normals as an additional guide", 0, {"off", "on"}),
+        one_of("schedule", "filter only at 4, 8, 16, ... samples; only blend in between", 0, {"off", "on"}),
+        one_of("blend", "blend back to the samples where filtering would increase the error", 1,
+               {"off", "on"}),
+        one_of("light",
+               "filtered light: the view's path class, or all of it, where direct light is noisy, too", 0,
+               {"path_class", "all"}),
+        one_of("color_metric", "headlight colours are compared in linear RGB, or in CIELAB / 100", 0,
+               {"linear", "lab"}),
+        one_of("depth_metric",
+               "depths are compared in metres, or by their ratio: sigma_d of its logarithm, such as 0.1", 0,
+               {"absolute", "relative"})};
 }
 
 }  // namespace
@@ -312,16 +313,21 @@ FilterEntry pixel_entry() {
     return {{.name = "pixel",
              .summary = "cross-bilateral filter of the high-variance light, blended by perceived variance",
              .source = "Schwenk 3",
+             .bytes_per_pixel = 270,
              .parameters = pixel_parameters(),
              .channels =
                  [](const Values& values) {
-                     frame::ChannelSet channels{Channel::Radiance, Channel::LowVariance,
-                                                Channel::HighVariance, Channel::Depth, Channel::Headlight};
+                     frame::ChannelSet channels{Channel::Radiance, Channel::Depth, Channel::Headlight};
+                     if (!is_on(values, LightChoice)) {
+                         channels.insert(Channel::LowVariance);
+                         channels.insert(Channel::HighVariance);
+                     }
                      if (is_on(values, Normals)) channels.insert(Channel::Normal);
                      return channels;
                  },
              .consistent = true,
-             .reads_variances = true},
+             .reads_variances = true,
+             .incremental = true},
             [](std::uint32_t, std::uint32_t) -> std::unique_ptr<Filter> {
                 return std::make_unique<PixelFilter>();
             }};

@@ -1,7 +1,9 @@
 #include "master/filter/psvgf.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
+#include <vector>
 
 #include "master/filter/convergence_blend.h"
 #include "master/filter/svgf/demodulate.h"
@@ -61,6 +63,7 @@ class Psvgf final : public Filter {
 
     void reset() override {
         for (Signal& signal : signals_) signal.forget();
+        layers_.forget();
         known_ = has_before_ = false;
         pending_ = changes_ = {};
     }
@@ -101,13 +104,10 @@ class Psvgf final : public Filter {
         if (history) {
             PassTimer timer(report, "motion", 4.0 * 4);
             if (!find_motion(now_, before_, motion_, context)) return false;
+            motion_.still = motion_.identity && !changes_.lights_or_materials && !changes_.geometry &&
+                            layers_.has_history();
         }
-        for (Signal& signal : signals) {
-            if (history && signal.has_history() &&
-                !signal.blend_history(now_, before_, motion_, settings, report, context)) {
-                return false;
-            }
-        }
+        if (history && !blend_histories(signals, settings, report, context)) return false;
         const bool feedback = history && settings.feedback > 0.0f && mean_age() >= 1.0;
         for (Signal& signal : signals) {
             if (!signal.filter(now_, settings, feedback, report, context)) return false;
@@ -118,21 +118,36 @@ class Psvgf final : public Filter {
                             ConvergenceBlend::bytes_per_pixel(out.picture.components()));
             const bool diffuse_alone = !rest_filtered && knows_diffuse(inputs);
             const Channel part = diffuse_alone ? Channel::HighVariance : Channel::Radiance;
-            if (!convergence_blend_.apply(inputs, part, {}, out.picture, context)) return false;
+            if (!convergence_blend_.apply(inputs, part, self_weights(signals), out.picture, context))
+                return false;
         }
         const bool shown_fits = shown_before_.pixel_count() == inputs.pixel_count() &&
                                 shown_before_.components() == out.picture.components();
         if (history && values[Taa] == On && shown_fits) {
-            PassTimer timer(report, "antialias", 4.0 * (3 * out.picture.components() + 5));
+            PassTimer timer(report, "antialias", 4.0 * (4 * out.picture.components() + 2 * 4 + 5));
             if (!smooth_edges(inputs, static_cast<float>(values[TaaRatio]), out.picture, context))
                 return false;
         }
-        PassTimer timer(report, "keep", 8.0 * out.picture.components());
+        PassTimer timer(report, "keep", 8.0 * (out.picture.components() + 6));
         shape(shown_, inputs, out.picture.components());
         std::ranges::copy(out.picture.values(), shown_.values().begin());
+        layers_.keep(inputs);
         if (out.wants_maps) write_maps(inputs, out);
         known_ = true;
         return true;
+    }
+
+    bool blend_histories(std::span<Signal> signals, const Settings& settings, Report& report,
+                         RunContext& context) {
+        for (Signal& signal : signals) {
+            const bool weighs = motion_.still && &signal == signals.data();
+            if (signal.has_history() &&
+                !signal.blend_history(now_, before_, motion_, settings,
+                                      weighs ? layers_.albedos() : Albedos{}, report, context)) {
+                return false;
+            }
+        }
+        return !motion_.still || layers_.blend_history(signals[0].now(), report, context);
     }
 
     Settings settings_of(const Values& values) const {
@@ -173,6 +188,7 @@ class Psvgf final : public Filter {
     void begin_film() {
         if (known_) {
             for (Signal& signal : signals_) signal.restart();
+            layers_.restart();
             std::swap(now_, before_);
             std::swap(shown_, shown_before_);
             has_before_ = true;
@@ -188,6 +204,20 @@ class Psvgf final : public Filter {
         return sum / static_cast<double>(ages.size());
     }
 
+    // Of the picture: the least of the signals', so that noise is not underestimated.
+    std::span<const float> self_weights(std::span<const Signal> signals) {
+        for (std::size_t i = 0; i < signals.size(); ++i) {
+            self_weights_[i].resize(std::size_t{width_} * height_);
+            signals[i].self_weights(self_weights_[i]);
+        }
+        std::vector<float>& least = self_weights_[0];
+        if (signals.size() > 1) {
+            std::ranges::transform(least, self_weights_[1], least.begin(),
+                                   [](float a, float b) { return std::min(a, b); });
+        }
+        return least;
+    }
+
     bool smooth_edges(const Inputs& inputs, float ratio, Planes& picture, RunContext& context) {
         shape(newness_, inputs, 1);
         const Planes& moments = signals_[0].now().moments;
@@ -195,7 +225,7 @@ class Psvgf final : public Filter {
             const float age = moments.plane(Age)[i];
             newness_.plane(0)[i] = age > 0.0f ? inputs.counts.plane(0)[i] / age : 1.0f;
         }
-        if (!antialias(picture, shown_before_, now_, motion_, newness_, ratio, smoothed_, context))
+        if (!antialiasing_.run(picture, shown_before_, now_, motion_, newness_, ratio, smoothed_, context))
             return false;
         std::ranges::copy(smoothed_.values(), picture.values().begin());
         return true;
@@ -227,6 +257,8 @@ class Psvgf final : public Filter {
     Motion motion_;
     FilmLayers layers_;
     ConvergenceBlend convergence_blend_;
+    std::array<std::vector<float>, 2> self_weights_;
+    Antialiasing antialiasing_;
     Planes shown_, shown_before_, smoothed_, newness_;
 };
 
@@ -298,6 +330,7 @@ FilterEntry psvgf_entry() {
         {.name = "psvgf",
          .summary = "progressive SVGF: history and edge-stopping wavelets on the diffuse irradiance",
          .source = "Dundr 2",
+         .bytes_per_pixel = 670,
          .parameters = psvgf_parameters(),
          .channels = [](const Values&) { return Needed; },
          .consistent = true,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <optional>
+#include <utility>
 
 #include "master/filter/catalog.h"
 #include "master/filter/upsample.h"
@@ -41,24 +42,38 @@ std::optional<picture::FileFormat> file_format(session::PictureEncoding encoding
 
 filter::Filter& Reconstructor::instance(const filter::Choice& choice, const view::View& view,
                                         const SceneState& scene, filter::Inputs& inputs) {
-    Instance& instance = instances_[view.id];
+    const filter::Description& description = choice.entry->description;
+    const InstanceKey key{std::string(description.name), inputs.width, inputs.height,
+                          description.needs_own_instance() ? view.id : ViewId{}};
     inputs.changes = {};
-    const std::string name(choice.entry->description.name);
-    if (!instance.filter || instance.name != name || instance.width != inputs.width ||
-        instance.height != inputs.height) {
-        instance = {name, inputs.width, inputs.height, choice.entry->make(inputs.width, inputs.height)};
+    User& user = users_[view.id];
+    if (user.key != key) {
+        const auto found = instances_.find(key);
+        auto made = found != instances_.end() ? nullptr : choice.entry->make(inputs.width, inputs.height);
+        Instance& entered = instances_[key];
+        if (made) entered.filter = std::move(made);
+        ++entered.users;
+        release(std::exchange(user.key, key));
     } else {
-        inputs.changes = {.film_restarted = instance.revision != view.revision,
-                          .lights_or_materials = instance.version < scene.edits.lights_or_materials,
-                          .geometry = instance.version < scene.edits.geometry};
+        inputs.changes = {.film_restarted = user.revision != view.revision,
+                          .lights_or_materials = user.version < scene.edits.lights_or_materials,
+                          .geometry = user.version < scene.edits.geometry};
     }
-    instance.revision = view.revision;
-    instance.version = scene.version;
-    return *instance.filter;
+    user.revision = view.revision;
+    user.version = scene.version;
+    return *instances_.at(key).filter;
+}
+
+void Reconstructor::release(const InstanceKey& key) {
+    const auto found = instances_.find(key);
+    if (found != instances_.end() && --found->second.users == 0) instances_.erase(found);
 }
 
 void Reconstructor::forget(ViewId first, ViewId last) {
-    instances_.erase(instances_.lower_bound(first), instances_.lower_bound(last));
+    for (auto user = users_.lower_bound(first); user != users_.lower_bound(last);) {
+        release(user->second.key);
+        user = users_.erase(user);
+    }
     exposures_.erase(exposures_.lower_bound(first), exposures_.lower_bound(last));
 }
 

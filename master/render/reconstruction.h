@@ -36,9 +36,9 @@ struct PictureFormat {
     Rect window;                     // of the picture, which they are relative to
 };
 
-// Filters whole films and encodes them. Every view has its own filter instance, which keeps its history from one
-// picture of the view to the next and is given the changes between them. Called by one thread; runs on all
-// cores.
+// Filters whole films and encodes them. A filter that keeps something from one picture of a view to the next has an
+// instance for every view and is given the changes between them; of the other filters, views of one size share an
+// instance. Called by one thread; runs on all cores.
 class Reconstructor {
   public:
     // Of view.id; `scene` is in the film.
@@ -55,24 +55,35 @@ class Reconstructor {
                      std::uint32_t height);
 
     void forget(ViewId first, ViewId last);  // filters and exposures of the views [first, last)
+    std::size_t filter_count() const { return instances_.size(); }
 
   private:
-    // The filter of a view, and the film it last processed.
-    struct Instance {
+    struct InstanceKey {
         std::string name;
         std::uint32_t width = 0, height = 0;
+        ViewId view;  // 0: of all views
+        friend auto operator<=>(const InstanceKey&, const InstanceKey&) = default;
+    };
+    struct Instance {
         std::unique_ptr<filter::Filter> filter;
+        std::size_t users = 0;
+    };
+    // The filter of a view, and the film it last processed.
+    struct User {
+        InstanceKey key;
         std::uint64_t revision = 0;
         Version version;
     };
     // Ready for the picture; sets in `inputs` what has changed since the previous one.
     filter::Filter& instance(const filter::Choice& choice, const view::View& view, const SceneState& scene,
                              filter::Inputs& inputs);
+    void release(const InstanceKey& key);
     std::vector<std::byte> encode(const filter::Planes& picture, const PictureFormat& format,
                                   session::PictureSummary& summary);
 
     tbb::task_arena arena_;
-    std::map<ViewId, Instance> instances_;
+    std::map<InstanceKey, Instance> instances_;
+    std::map<ViewId, User> users_;
     std::map<ViewId, double> exposures_;   // EV, measured
     filter::Inputs inputs_, full_inputs_;  // kept for their memory
     filter::Output output_;

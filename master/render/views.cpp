@@ -205,7 +205,7 @@ ViewState& Views::view_to_filter(const SessionRecord& asker, const std::string& 
 }
 
 std::string Views::set_filter(const SessionRecord& asker, const std::string& name, const std::string& filter,
-                              TimePoint now) {
+                              const RoomProblem& room_problem, TimePoint now) {
     const auto refuse = [](const std::string& why) { throw Error(ErrorCode::Refused, why); };
     const auto choice = filter::parse_choice(filter, filter::catalog());
     if (!choice) refuse(choice.error().what());
@@ -221,8 +221,10 @@ std::string Views::set_filter(const SessionRecord& asker, const std::string& nam
             "--filter");
     }
     const FilterChange change = filter_change(view.request.view, filter);
+    session::ViewRequest wanted = view.request;
+    wanted.view = change.view;
+    if (const std::string why = room_problem(wanted, view.id); !why.empty()) refuse(why);
     if (view.shows_all()) {
-        session::ViewRequest wanted = view.request;
         wanted.view = view.asked;
         wanted.view.filter = filter;
         this->change(view, std::move(wanted), view.version, false, now);

@@ -37,11 +37,13 @@ class Views {
     std::string share(SessionId session, std::uint64_t number, const session::ViewRequest& wanted);
     // Stops watching the view; or ends it with its current samples.
     void end(SessionId session, const wire::EndView& request, TimePoint now);
+    // Why there is no room for a view if the other one goes for it; "" = there is.
+    using RoomProblem = std::function<std::string(const session::ViewRequest& completed, ViewId replaced)>;
     // Sets the filter of the view of that name; "" = the only view, or the only one that the client may change. Its
     // owner may, other sessions with the owner's key, and operators. Returns a description of the effect; throws
     // Error{Refused} with the reason.
     std::string set_filter(const SessionRecord& asker, const std::string& name, const std::string& filter,
-                           TimePoint now);
+                           const RoomProblem& room_problem, TimePoint now);
     // ---- jobs: views that continue without their client ----
     // Why it cannot be a job; "" = it can.
     static std::string job_problem(const session::ViewRequest& request);

@@ -28,13 +28,17 @@ using Values = std::vector<double>;
 
 struct Description {
     std::string_view name, summary, source;  // source: "Schwenk 3"
+    double bytes_per_pixel = 0.0;            // of the memory that an instance keeps between runs, at most
     std::vector<Parameter> parameters;
     frame::ChannelSet (*channels)(const Values&);  // read by a run with these values
     // Its error goes to 0 with the number of samples. Otherwise it is biased.
     bool consistent = false;
     bool reads_variances = false;
-    // Keeps a history between runs: reset() drops it.
+    // Keeps a history of earlier films: reset() drops it.
     bool temporal = false;
+    // Keeps results for later pictures of the same film, with some values: reset() drops them.
+    bool incremental = false;
+    bool needs_own_instance() const { return temporal || incremental; }  // for each view
     // The same samples give the same bits on every machine.
     bool reproducible = true;
     // The paths for HighVariance, if it reads that channel.

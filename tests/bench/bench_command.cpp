@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tests/bench/backends/backends_command.h"
+#include "tests/bench/consistency/consistency_command.h"
 #include "tests/bench/filters/filters_command.h"
 #include "tests/bench/filters/pictures.h"
 #include "tests/bench/live/displays_command.h"
@@ -13,12 +14,12 @@
 namespace tessera::tools::bench {
 
 Command bench_command(cli::CommandLine& program) {
-    cli::CommandLine& line = program.command(
-        "bench",
-        "Benchmarks: error and time of denoisers, accuracy of variances, back-ends, edits and displays.");
-    const std::vector<Command> commands{backends_command(line), displays_command(line),
-                                        filters_command(line),  live_command(line),
-                                        pictures_command(line), variance_command(line)};
+    cli::CommandLine& line = program.command("bench",
+                                             "Benchmarks: error, time and consistency of denoisers, accuracy "
+                                             "of variances, back-ends, edits and displays.");
+    const std::vector<Command> commands{
+        backends_command(line), consistency_command(line), displays_command(line), filters_command(line),
+        live_command(line),     pictures_command(line),    variance_command(line)};
     return {"bench", [commands](std::string_view chosen) {
                 const auto command = std::ranges::find(commands, chosen, &Command::name);
                 return command->run(chosen);

@@ -284,10 +284,10 @@ TEST(BenchFilters, SmallRunWritesReports) {
     EXPECT_GT(size["copy_gigabytes_per_second"].get<double>(), 0.0);
     ASSERT_EQ(size["rows"].size(), 4u);
     for (const auto& row : size["rows"]) {
-        for (const char* field :
-             {"filter", "spp", "relmse", "mse", "flip_mean", "ssim", "filter_milliseconds",
-              "sampling_milliseconds", "passes", "bytes_per_pixel", "time_over_plain_copy",
-              "relmse_over_unfiltered", "equal_error_sample_ratio", "equal_time_error_ratio", "trimmed"}) {
+        for (const char* field : {"filter", "spp", "relmse", "mse", "flip_mean", "ssim", "specks", "energy",
+                                  "filter_milliseconds", "sampling_milliseconds", "passes", "bytes_per_pixel",
+                                  "time_over_plain_copy", "relmse_over_unfiltered",
+                                  "equal_error_sample_ratio", "equal_time_error_ratio", "trimmed"}) {
             EXPECT_TRUE(row.contains(field)) << field;
         }
         EXPECT_GT(row["relmse"]["value"].get<double>(), 0.0);

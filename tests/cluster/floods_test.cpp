@@ -134,30 +134,74 @@ TEST(EditFloods, AnEditThatDoesNotFitIntoMemoryIsRefusedBeforeItIsDecoded) {
     EXPECT_TRUE(small.accepted) << small.problems.at(0);
 }
 
+wire::RequestView view_request(std::uint64_t number, std::uint32_t size, std::uint64_t spp,
+                               const char* filter = "") {
+    wire::RequestView view;
+    view.number = view.request = number;
+    view.wanted.name = "view " + std::to_string(number);
+    view.wanted.stop.spp = spp;
+    view.wanted.view.width = view.wanted.view.height = size;
+    view.wanted.view.window = {0, 0, static_cast<std::int32_t>(size), static_cast<std::int32_t>(size)};
+    view.wanted.view.camera = view::perspective(glm::dmat4(1.0), 0.8, 1.0);
+    view.wanted.view.channels = {frame::Channel::Radiance};
+    view.wanted.view.filter = filter;
+    view.wanted.picture = session::PictureEncoding::Planes;
+    return view;
+}
+
+// Sends requests one after another.
+struct ViewRequester {
+    RawPeer& peer;
+    std::size_t answer = 0;
+    std::string problem(const wire::RequestView& view) {
+        peer.send(view);
+        EXPECT_TRUE(peer.wait_for<wire::RequestDone>(answer));
+        const auto* done = peer.received<wire::RequestDone>(answer++);
+        return done->accepted ? std::string() : done->text;
+    }
+    bool accepts(const wire::RequestView& view) { return problem(view).empty(); }
+};
+
 TEST_F(Floods, ViewersOpenFewAndModerateViews) {
     RawPeer eve = join_as_viewer();
-    const auto request = [](std::uint64_t number, std::uint32_t size, std::uint64_t spp) {
-        wire::RequestView view;
-        view.number = view.request = number;
-        view.wanted.stop.spp = spp;
-        view.wanted.view.width = view.wanted.view.height = size;
-        view.wanted.view.window = {0, 0, static_cast<std::int32_t>(size), static_cast<std::int32_t>(size)};
-        view.wanted.view.camera = view::perspective(glm::dmat4(1.0), 0.8, 1.0);
-        view.wanted.view.channels = {frame::Channel::Radiance};
-        view.wanted.picture = session::PictureEncoding::Planes;
-        return view;
+    ViewRequester requester{eve};
+    EXPECT_FALSE(requester.accepts(view_request(1, 8192, 1))) << "too many pixels";
+    EXPECT_FALSE(requester.accepts(view_request(2, 64, 1u << 20))) << "too many samples";
+    for (std::uint64_t i = 3; i < 11; ++i) EXPECT_TRUE(requester.accepts(view_request(i, 64, 16)));
+    EXPECT_FALSE(requester.accepts(view_request(11, 64, 16))) << "too many views";
+    EXPECT_TRUE(requester.accepts(view_request(10, 128, 16))) << "one of them may change";
+}
+
+// The film of such a view takes 8 MiB, and what psvgf keeps several times as much.
+TEST(ViewFloods, ViewsWhoseDenoisersDoNotFitIntoMemoryAreRefused) {
+    LoopbackCluster cluster([](master::MasterSettings& settings) { settings.memory_limit = 64u << 20; });
+    const auto ann = cluster.member("ann", std::make_shared<scene::BlobStore>(), net::Role::Operator);
+    RawPeer bob(cluster.channel(net::Role::Viewer, "bob"));
+    ASSERT_TRUE(bob.connect("bob"));
+    bob.send(wire::JoinScene{.title = "test", .name = "bob"});
+    ASSERT_TRUE(bob.wait_for<wire::SceneJoined>());
+    ViewRequester requester{bob};
+    EXPECT_EQ(requester.problem(view_request(1, 240, 4, "psvgf")), "");
+    const std::string problem = requester.problem(view_request(2, 240, 4, "psvgf"));
+    EXPECT_TRUE(problem.starts_with("the master has no room for the film and the denoiser of this view"))
+        << problem;
+    EXPECT_NE(problem.find("close views"), std::string::npos) << problem;
+    EXPECT_EQ(requester.problem(view_request(2, 240, 4, "none")), "") << "without a denoiser it fits";
+    EXPECT_EQ(requester.problem(view_request(1, 240, 8, "psvgf:levels=5")), "") << "it replaces the first";
+    EXPECT_NE(requester.problem(view_request(2, 240, 4, "psvgf")), "");
+    EXPECT_EQ(requester.problem(view_request(1, 240, 4, "none")), "");
+    EXPECT_EQ(requester.problem(view_request(2, 240, 4, "psvgf")), "") << "the first has made room";
+
+    const auto problem_of_filter = [&](const char* filter) -> std::string {
+        try {
+            (void)ann->set_filter("view 1", filter);
+            return {};
+        } catch (const Error& error) {
+            return error.what();
+        }
     };
-    std::size_t answer = 0;
-    const auto accepted = [&](const wire::RequestView& view) {
-        eve.send(view);
-        EXPECT_TRUE(eve.wait_for<wire::RequestDone>(answer));
-        return eve.received<wire::RequestDone>(answer++)->accepted;
-    };
-    EXPECT_FALSE(accepted(request(1, 8192, 1))) << "too many pixels";
-    EXPECT_FALSE(accepted(request(2, 64, 1u << 20))) << "too many samples";
-    for (std::uint64_t i = 3; i < 11; ++i) EXPECT_TRUE(accepted(request(i, 64, 16)));
-    EXPECT_FALSE(accepted(request(11, 64, 16))) << "too many views";
-    EXPECT_TRUE(accepted(request(10, 128, 16))) << "one of them may change";
+    EXPECT_TRUE(problem_of_filter("psvgf").starts_with("the master has no room")) << "a view that is changed";
+    EXPECT_EQ(problem_of_filter("gauss"), "");
 }
 
 }  // namespace

@@ -164,6 +164,41 @@ TEST(FdfNumerics, OneSampleHasTheVarianceOfItsNeighbourhood) {
     EXPECT_LT(mean_squared_error(run_filter("fdf:s_max=0.3", inputs).picture, truth), 0.1 * unfiltered);
 }
 
+// Squares of 9 x 9 pixels, 0.2 % of the picture, with a thousand times the light; `deviation` is relative.
+Inputs shadows_and_bright_square(std::uint32_t n, float deviation) {
+    Inputs inputs = shadows(n);
+    for (const Channel channel : {Channel::ShadingFeature, Channel::Radiance}) {
+        const auto index = static_cast<std::size_t>(channel);
+        for (std::uint32_t c = 0; c < inputs.means[index].components(); ++c) {
+            for (std::uint32_t y = 4; y < 13; ++y) {
+                for (std::uint32_t x = 4; x < 13; ++x) {
+                    inputs.means[index].row(c, y)[x] = 1000.0f;
+                    inputs.variances[index].row(c, y)[x] = 1e6f * deviation * deviation;
+                }
+            }
+        }
+    }
+    return inputs;
+}
+
+// Largest difference out of reach of the square.
+double difference_elsewhere(const Inputs& a, const Inputs& b) {
+    const Planes one = run_filter("fdf:blend=off", a).picture, two = run_filter("fdf:blend=off", b).picture;
+    double largest = 0.0;
+    for (std::uint32_t y = 48; y < FdfHeight; ++y) {
+        for (std::uint32_t x = 0; x < FdfWidth; ++x) {
+            largest = std::max(largest, std::abs(double(one.row(1, y)[x]) - double(two.row(1, y)[x])));
+        }
+    }
+    return largest;
+}
+
+// The emission of a lamp is no measure for differences of shading. What only some samples found is.
+TEST(FdfNumerics, ALampDoesNotBlurShadowsElsewhere) {
+    EXPECT_LT(difference_elsewhere(shadows(16), shadows_and_bright_square(16, 0.0f)), 0.002);
+    EXPECT_GT(difference_elsewhere(shadows(16), shadows_and_bright_square(16, 1.0f)), 0.02);
+}
+
 TEST(FdfNumerics, NeverWorseThanUnfiltered) {  // L36
     const Planes truth = shadowed_texture_truth(FdfWidth, FdfHeight);
     for (std::uint32_t n = 4; n <= 4096; n *= 4) {

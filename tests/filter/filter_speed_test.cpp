@@ -126,7 +126,7 @@ TEST(PsvgfSpeed, IsLinearInThePixels) {  // DT28
 }
 
 // Stages between the scenes of one camera, as the thesis has it. A moving camera costs more on a CPU, which skips the
-// spatial variance in rows that are nowhere young.
+// spatial variance in rows that are nowhere young, and copies the history of a still picture.
 TEST(PsvgfSpeed, HardlyDependsOnSceneAndCamera) {  // DT28
     PlanesScene wall, tilted;
     wall.board_half = 0.0;
@@ -142,7 +142,8 @@ TEST(PsvgfSpeed, HardlyDependsOnSceneAndCamera) {  // DT28
     for (std::size_t i = 0; i < subjects.size(); ++i) {
         const std::size_t first = i / 3 * 3;  // of the same camera
         EXPECT_NEAR(subjects[i].seconds / subjects[first].seconds, 1.0, 0.2) << i;
-        EXPECT_NEAR(subjects[i].seconds / subjects[i % 3].seconds, 1.2, 0.3) << i;
+        const double of_still = i < 3 ? 1.0 : 1.4;
+        EXPECT_NEAR(subjects[i].seconds / subjects[i % 3].seconds, of_still, 0.3) << i;
         EXPECT_NEAR(subjects[i].pass_seconds() / subjects[0].pass_seconds(), 1.0, 0.25) << i;
         // On the GPUs of the thesis the wavelet takes 56 to 74 %. Here it is vectorised, lookups at any place of the
         // history are not.

@@ -5,7 +5,7 @@
 
 #include "master/filter/nfor/regression.h"
 #include "master/filter/nfor/selection.h"
-#include "master/filter/nfor/self_weight.h"
+#include "master/filter/self_weight.h"
 #include "mediator/base/random.h"
 #include "tests/filter/synthetic.h"
 
@@ -313,7 +313,7 @@ struct Halves {
                 const float da = noise(random) / std::sqrt(n_a), db = noise(random) / std::sqrt(n_b);
                 colors[0].plane(c)[i] = 10.0f + da;
                 colors[1].plane(c)[i] = 10.0f + db;
-                change[i] += scale.values()[i] * a * (da - db);
+                response[i] += scale.values()[i] * a * (da - db);
                 filtered.plane(c)[i] = 10.0f + a * (n_a * da + n_b * db) / (n_a + n_b);
             }
         }
@@ -321,14 +321,19 @@ struct Halves {
     std::vector<float> weights() {
         tbb::task_arena arena(2);
         RunContext context{arena, {}};
-        nfor::SelfWeight weight;
-        EXPECT_TRUE(weight.run(inputs, colors, scale, change, filtered, context));
+        SelfWeight weight;
+        std::vector<float> change(response.size(), 0.0f);
+        for (std::uint32_t c = 0; c < 3; ++c) {
+            for (std::size_t i = 0; i < change.size(); ++i)
+                change[i] += colors[0].plane(c)[i] - colors[1].plane(c)[i];
+        }
+        EXPECT_TRUE(weight.run(inputs, change, scale.plane(0), response, filtered, context));
         return {weight.weights().begin(), weight.weights().end()};
     }
     Inputs inputs;
     std::array<Planes, 2> colors{Planes(Size, Size, 3), Planes(Size, Size, 3)};
     Planes scale{Size, Size, 1}, filtered{Size, Size, 3};
-    std::vector<float> change = std::vector<float>(std::size_t{Size} * Size, 0.0f);
+    std::vector<float> response = std::vector<float>(std::size_t{Size} * Size, 0.0f);
 };
 
 TEST(NforSelfWeight, IsTheWeightOfThePixelsOwnNoise) {
@@ -344,7 +349,7 @@ TEST(NforSelfWeight, NoiseOfOthersDoesNotCount) {
     Halves halves(0.0f, 8.0f, 8.0f);
     std::mt19937 random(13);
     std::normal_distribution<float> noise;
-    for (float& change : halves.change) change = noise(random);
+    for (float& response : halves.response) response = noise(random);
     double mean = 0.0;
     for (const float w : halves.weights()) mean += w / (48.0 * 48.0);
     EXPECT_LT(mean, 0.1);

@@ -17,7 +17,7 @@ struct Wide {
                  Planes(width, height, 2),
                  std::vector<std::uint32_t>(std::size_t{width} * height),
                  {}} {
-        picture.fit(width, height, 4);
+        picture.fit(width, height, SignalComponents);
         CounterRandom random(5, width);
         for (std::uint32_t y = 0; y < height; ++y) {
             for (std::uint32_t x = 0; x < width; ++x) {
@@ -29,7 +29,7 @@ struct Wide {
                     guides.slope.row(c, y)[x] = 0.4f * static_cast<float>(random.uniform() - 0.5);
                 }
                 guides.ids[std::size_t{y} * width + x] = random.uniform() < 0.8 ? 1 : 2;
-                for (std::uint32_t c = 0; c < 4; ++c) {
+                for (std::uint32_t c = 0; c < SignalComponents; ++c) {
                     picture.row(c, y)[x] = static_cast<float>(random.uniform());
                 }
             }
@@ -37,7 +37,7 @@ struct Wide {
     }
     PaddedPlanes filtered(std::uint32_t level, const EdgeStops& stops, int threads = 2) const {
         PaddedPlanes out;
-        out.fit(picture.width(), picture.height(), 4);
+        out.fit(picture.width(), picture.height(), SignalComponents);
         tbb::task_arena arena(threads);
         RunContext context{arena, {}};
         EXPECT_TRUE(AtrousWavelet5x5().run(guides, stops, level, picture, out, context));
@@ -54,14 +54,14 @@ float light_at(const PaddedPlanes& p, std::int64_t x, std::int64_t y) {
 }
 
 // E-D8 to E-D13, at (x, y).
-std::array<double, 4> expected_at(const Wide& wide, const EdgeStops& stops, std::int64_t step, std::int64_t x,
-                                  std::int64_t y) {
+std::array<double, SignalComponents> expected_at(const Wide& wide, const EdgeStops& stops, std::int64_t step,
+                                                 std::int64_t x, std::int64_t y) {
     constexpr std::array<double, 3> Kernel{6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0};
     const std::int64_t width = wide.picture.width(), height = wide.picture.height();
     const auto at = [](const Planes& planes, std::uint32_t c, std::int64_t u, std::int64_t v) {
         return planes.row(c, static_cast<std::uint32_t>(v))[u];
     };
-    std::array<double, 4> sum{};
+    std::array<double, SignalComponents> sum{};
     double weights = 0.0;
     for (std::int64_t dy = -2; dy <= 2; ++dy) {
         for (std::int64_t dx = -2; dx <= 2; ++dx) {
@@ -101,6 +101,8 @@ std::array<double, 4> expected_at(const Wide& wide, const EdgeStops& stops, std:
         }
     }
     for (std::size_t c = 0; c < 4; ++c) sum[c] /= c == 3 ? weights * weights : weights;
+    sum[OwnWeightComponent] =
+        Kernel[0] * Kernel[0] / weights * wide.picture.row(OwnWeightComponent, std::uint32_t(y))[x];
     return sum;
 }
 
@@ -115,7 +117,7 @@ TEST(Wavelet5x5, FollowsItsFormula) {
             for (std::uint32_t y = 0; y < height; ++y) {
                 for (std::uint32_t x = 0; x < width; ++x) {
                     const auto expected = expected_at(wide, stops, std::int64_t{1} << level, x, y);
-                    for (std::uint32_t c = 0; c < 4; ++c) {
+                    for (std::uint32_t c = 0; c < SignalComponents; ++c) {
                         ASSERT_NEAR(out.row(c, y)[x], expected[c], 2e-5)
                             << width << " x " << height << ", level " << level << " at " << x << ", " << y;
                     }
@@ -130,7 +132,7 @@ TEST(Wavelet5x5, AnyNumberOfThreadsGivesTheSameBits) {
     for (const std::uint32_t level : {0u, 2u, 5u}) {
         const PaddedPlanes one = wide.filtered(level, {}, 1), three = wide.filtered(level, {}, 3);
         for (std::uint32_t y = 0; y < 200; ++y) {
-            for (std::uint32_t c = 0; c < 4; ++c) {
+            for (std::uint32_t c = 0; c < SignalComponents; ++c) {
                 ASSERT_TRUE(std::equal(one.row(c, y), one.row(c, y) + 60, three.row(c, y))) << level;
             }
         }

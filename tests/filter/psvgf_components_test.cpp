@@ -1,13 +1,14 @@
-// The components of progressive SVGF: edge stops, wavelet levels, hole filling, antialiasing.
+// The components of progressive SVGF: edge stops, wavelet levels, hole filling.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 
 #include "master/filter/svgf/atrous_wavelet.h"
 #include "master/filter/svgf/hole_fill.h"
+#include "master/filter/svgf/signal.h"
 #include "master/filter/svgf/spatial_variance.h"
-#include "master/filter/svgf/taa.h"
 #include "mediator/base/random.h"
 
 namespace tessera::filter::svgf {
@@ -35,7 +36,7 @@ using Value = std::function<float(std::uint32_t x, std::uint32_t y)>;
 PaddedPlanes picture_of(std::uint32_t width, std::uint32_t height, const Value& color,
                         const Value& variance) {
     PaddedPlanes picture;
-    picture.fit(width, height, 4);
+    picture.fit(width, height, SignalComponents);
     for (std::uint32_t y = 0; y < height; ++y) {
         for (std::uint32_t x = 0; x < width; ++x) {
             for (std::uint32_t c = 0; c < 3; ++c) picture.row(c, y)[x] = color(x, y);
@@ -50,7 +51,7 @@ PaddedPlanes transform(const Guides& guides, const EdgeStops& stops, const std::
     AtrousWavelet wavelet;
     RunContext context{arena(), {}};
     PaddedPlanes next;
-    next.fit(picture.width(), picture.height(), 4);
+    next.fit(picture.width(), picture.height(), SignalComponents);
     for (const std::uint32_t level : levels) {
         EXPECT_TRUE(wavelet.run(guides, stops, level, picture, next, context));
         std::swap(picture, next);
@@ -148,6 +149,85 @@ TEST(Wavelet, VarianceFollowsTheSquaredWeights) {  // DT12
     EXPECT_NEAR(inner(twice) * 12.0, 0.01978, 0.003);
 }
 
+// The response of a pixel to its own impulse after all levels, which no step returns to.
+TEST(Wavelet, KnowsThePixelsOwnWeight) {
+    const std::uint32_t size = 160, tested = 40;
+    Guides guides = flat(size, size);
+    for (std::uint32_t y = 0; y < size; ++y) {
+        for (std::uint32_t x = 0; x < size; ++x) {
+            if (uniform(9, x, y) < 0.5f) guides.ids[std::size_t{y} * size + x] = 2;
+        }
+    }
+    for (std::uint32_t k = 0; k < tested; ++k) {
+        const auto px = static_cast<std::uint32_t>(uniform(11, k, 0) * size),
+                   py = static_cast<std::uint32_t>(uniform(11, k, 1) * size);
+        PaddedPlanes impulse = picture_of(
+            size, size, [&](auto x, auto y) { return x == px && y == py ? 1.0f : 0.0f; },
+            [](auto, auto) { return 1.0f; });
+        for (std::uint32_t y = 0; y < size; ++y) std::fill_n(impulse.row(OwnWeightComponent, y), size, 1.0f);
+        const PaddedPlanes out = transform(guides, Open, DundrOrder, impulse);
+        const float response = out.row(0, py)[px];
+        EXPECT_NEAR(out.row(OwnWeightComponent, py)[px], response, 1e-4f * response) << px << " " << py;
+        EXPECT_GT(response, 1e-4f);
+    }
+}
+
+TEST(Accumulation, KnowsTheWeightOfTheFilmsSamples) {
+    const std::uint32_t width = 4;
+    Planes history(width, 1, HistoryCount), trust;
+    State state{.moments = Planes(width, 1, MomentCount)};
+    state.color.fit(width, 1, SignalComponents);
+    for (std::uint32_t x = 0; x < width; ++x) {
+        history.row(HistoryMoments + Age, 0)[x] = x == 1 ? 0.0f : 3.0f;
+        state.moments.row(Age, 0)[x] = x == 2 ? 0.0f : 1.0f;
+        state.color.row(OwnWeightComponent, 0)[x] = 1.0f;
+        state.color.row(0, 0)[x] = 1.0f;  // and 0 in the history
+    }
+    RunContext context{arena(), {}};
+    ASSERT_TRUE(accumulate(history, {.r0 = 0.0f}, {}, state, trust, context));
+    const std::array<float, 4> expected{0.25f, 1.0f, 0.0f, 0.25f};
+    for (std::uint32_t x = 0; x < width; ++x) {
+        EXPECT_NEAR(state.color.row(OwnWeightComponent, 0)[x], expected[x], 1e-6f) << x;
+        EXPECT_EQ(state.color.row(OwnWeightComponent, 0)[x], state.color.row(0, 0)[x]) << x;
+    }
+}
+
+// The noise of U - F relative to that of U, measured.
+TEST(Signal, SelfWeightsGiveTheNoiseThatIsLeft) {
+    const std::uint32_t size = 128;
+    const Guides guides = flat(size, size);
+    Settings settings;
+    settings.stops = {.sigma_n = 1.0f, .sigma_d = 1e9f, .sigma_l = 1e12f};
+    settings.order = LevelOrder::Fine;
+    RunContext context{arena(), {}};
+    for (const std::uint32_t levels : {0u, 1u, 2u}) {
+        settings.levels = levels;
+        Signal signal;
+        signal.fit(size, size);
+        State& state = signal.now();
+        std::ranges::fill(state.moments.plane(Age), 16.0f);
+        std::ranges::fill(state.moments.plane(SampleVariance), 15.0f / 12.0f);  // 1 / 12 of the mean
+        for (std::uint32_t y = 0; y < size; ++y) {
+            for (std::uint32_t c = 0; c < 3; ++c) {
+                for (std::uint32_t x = 0; x < size; ++x) state.color.row(c, y)[x] = uniform(13, x, y);
+            }
+            std::fill_n(state.color.row(OwnWeightComponent, y), size, 1.0f);
+        }
+        Report report;
+        ASSERT_TRUE(signal.filter(guides, settings, false, report, context));
+        std::vector<float> weights(std::size_t{size} * size);
+        signal.self_weights(weights);
+        double left = 0.0, count = 0.0;
+        for (std::uint32_t y = 8; y + 8 < size; ++y) {
+            for (std::uint32_t x = 8; x + 8 < size; ++x) {
+                left += std::pow(double(state.color.row(0, y)[x]) - signal.filtered().row(0, y)[x], 2.0);
+                count += 1.0;
+            }
+        }
+        EXPECT_NEAR(1.0 - weights[std::size_t{64} * size + 64], left / count * 12.0, 0.03) << levels;
+    }
+}
+
 TEST(Wavelet, OtherSurfacesHaveNoWeight) {  // DT14
     const std::uint32_t width = 128, height = 64;
     const auto split = [&](const std::function<void(Guides&, std::uint32_t, std::uint32_t)>& other,
@@ -236,7 +316,7 @@ TEST(Variance, IsSpatialForYoungPixels) {
         for (std::uint32_t x = 32; x < size; ++x) guides.ids[std::size_t{y} * size + x] = 2;
     }
     State state{.moments = Planes(size, size, MomentCount)};
-    state.color.fit(size, size, 4);
+    state.color.fit(size, size, SignalComponents);
     for (std::uint32_t y = 0; y < size; ++y) {
         for (std::uint32_t x = 0; x < size; ++x) {
             const bool left = x < 32;
@@ -291,107 +371,6 @@ TEST(Holes, AreFilledFromNeighbours) {  // DT21
     }
     EXPECT_LT(error / (width * height), 0.01);
     EXPECT_LT(wrong, 3.0 * height);  // at most some pixels next to the edge
-}
-
-struct Screen {
-    Screen(std::uint32_t width, std::uint32_t height)
-        : guides(flat(width, height)), newness(width, height, 1) {
-        motion.identity = true;
-        motion.position = Planes(width, height, 2);
-        motion.inverse_depth = guides.inverse_depth;
-        for (std::uint32_t y = 0; y < height; ++y) {
-            for (std::uint32_t x = 0; x < width; ++x) {
-                motion.position.row(0, y)[x] = static_cast<float>(x);
-                motion.position.row(1, y)[x] = static_cast<float>(y);
-            }
-        }
-    }
-    Planes blend(const Planes& picture, const Planes& before, float ratio) {
-        RunContext context{arena(), {}};
-        Planes out;
-        EXPECT_TRUE(antialias(picture, before, guides, motion, newness, ratio, out, context));
-        return out;
-    }
-    Guides guides;
-    Motion motion;
-    Planes newness;
-};
-
-TEST(Antialiasing, JitteredEdgesConvergeToTheirCoverage) {  // DT26
-    const std::uint32_t width = 64, height = 32;
-    Screen screen(width, height);
-    const auto edge = [](double x, double y) { return x + 0.37 * y < 36.3 ? 0.2f : 0.8f; };
-    Planes shown, exact(width, height, 3);
-    std::vector<double> sums(std::size_t{width} * height);
-    for (std::uint64_t frame = 0; frame < 64; ++frame) {
-        CounterRandom random(frame);
-        const double jx = random.uniform(), jy = random.uniform();
-        Planes picture(width, height, 3);
-        for (std::uint32_t y = 0; y < height; ++y) {
-            for (std::uint32_t x = 0; x < width; ++x) {
-                for (std::uint32_t c = 0; c < 3; ++c) picture.row(c, y)[x] = edge(x + jx, y + jy);
-            }
-        }
-        shown = frame == 0 ? picture : screen.blend(picture, shown, 0.1f);
-    }
-    double error = 0.0;
-    for (std::uint32_t y = 0; y < height; ++y) {
-        for (std::uint32_t x = 0; x < width; ++x) {
-            double covered = 0.0;
-            for (int k = 0; k < 64; ++k) covered += edge(x + (k % 8 + 0.5) / 8, y + (k / 8 + 0.5) / 8) / 64.0;
-            const double d = shown.row(0, y)[x] - covered;
-            error += d * d;
-        }
-    }
-    EXPECT_LT(std::sqrt(error / (width * height)), 0.02);
-}
-
-TEST(Antialiasing, StaysInTheNeighbourhoodRangeWithoutGhosting) {  // DT26
-    const std::uint32_t width = 64, height = 32;
-    Screen screen(width, height);
-    Planes shown;
-    for (std::uint32_t frame = 0; frame < 12; ++frame) {
-        Planes picture(width, height, 4);
-        for (std::uint32_t y = 0; y < height; ++y) {
-            for (std::uint32_t x = 0; x < width; ++x) {
-                const bool object = x >= 4 * frame && x < 4 * frame + 4;
-                for (std::uint32_t c = 0; c < 4; ++c) {
-                    picture.row(c, y)[x] = (object ? 1e5f : 0.1f) * (1.0f + 0.1f * c) + uniform(frame, x, y);
-                }
-            }
-        }
-        shown = frame == 0 ? picture : screen.blend(picture, shown, 0.1f);
-        for (std::uint32_t y = 1; y + 1 < height; ++y) {
-            for (std::uint32_t x = 1; x + 1 < width; ++x) {
-                for (std::uint32_t c = 0; c < 4; ++c) {
-                    float least = 1e30f, most = -1e30f;
-                    for (std::uint32_t ty = y - 1; ty <= y + 1; ++ty) {
-                        for (std::uint32_t tx = x - 1; tx <= x + 1; ++tx) {
-                            least = std::min(least, picture.row(c, ty)[tx]);
-                            most = std::max(most, picture.row(c, ty)[tx]);
-                        }
-                    }
-                    EXPECT_GE(shown.row(c, y)[x], least - 1e-6f * least);
-                    EXPECT_LE(shown.row(c, y)[x], most * (1.0f + 1e-6f));
-                }
-                if (frame >= 1 && x + 2 < 4 * frame) {
-                    EXPECT_LT(shown.row(0, y)[x], 2.0f) << frame << " " << x;
-                }
-            }
-        }
-    }
-}
-
-TEST(Antialiasing, WithNewSamplesAloneThePictureStays) {
-    const std::uint32_t width = 16, height = 8;
-    Screen screen(width, height);
-    std::ranges::fill(screen.newness.values(), 1.0f);
-    Planes picture(width, height, 3), before(width, height, 3);
-    for (std::size_t i = 0; i < picture.values().size(); ++i) {
-        picture.values()[i] = uniform(3, static_cast<std::uint32_t>(i), 0);
-    }
-    const Planes out = screen.blend(picture, before, 0.1f);
-    for (std::size_t i = 0; i < picture.values().size(); ++i) EXPECT_EQ(out.values()[i], picture.values()[i]);
 }
 
 }  // namespace

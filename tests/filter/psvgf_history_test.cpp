@@ -257,6 +257,69 @@ TEST(PsvgfHistory, ChangedGeometryIsDroppedWhereItChanged) {
     }
 }
 
+// A view may show other objects without an edit of the scene, as with another set of object layers.
+TEST(PsvgfHistory, OtherObjectsInAStillPictureDropIt) {
+    const PlanesScene scene;
+    const auto camera = looking_at(scene, {}, Width, Height);
+    const Inputs before = photograph(scene, camera, {.n = 16, .seed = 1}),
+                 after = photograph(wall_alone(), camera, {.n = 1, .seed = 2});
+    Session session(Raw + "r0=0");
+    session.restart(before);
+    session.restart(after);
+    const auto same_around = [&](std::uint32_t x, std::uint32_t y) {
+        for (std::uint32_t ty = y - 1; ty <= y + 1; ++ty) {
+            for (std::uint32_t tx = x - 1; tx <= x + 1; ++tx) {
+                const std::size_t i = std::size_t{ty} * Width + tx;
+                if (before.object_ids[i] == after.object_ids[i]) return true;
+            }
+        }
+        return false;
+    };
+    std::size_t dropped = 0;
+    for (std::uint32_t y = 1; y + 1 < Height; ++y) {
+        for (std::uint32_t x = 1; x + 1 < Width; ++x) {
+            if (same_around(x, y)) continue;
+            ++dropped;
+            EXPECT_EQ(session.age(x, y), 1.0f) << x << " " << y;
+        }
+    }
+    EXPECT_GT(dropped, 100u);
+}
+
+// Pixels of two surfaces whose samples see either: light, alpha and what is not diffuse.
+TEST(PsvgfHistory, OfAStillPictureIsThatOfItsPixels) {
+    constexpr std::uint32_t Size = 16, Frames = 12;
+    Session session(Raw + "r0=0");
+    Planes sum(Size, Size, 4), picture;
+    for (std::uint32_t frame = 0; frame < Frames; ++frame) {
+        Inputs inputs = synthetic_inputs(Size, Size, 1, [&](auto x, auto y, auto) {
+            const bool front =
+                x < 6 || (x == 6 && CounterRandom(frame, std::uint64_t{y} << 32 | x).uniform() < 0.4);
+            SyntheticSample s;
+            s.albedo.fill(front ? 0.9f : 0.1f);
+            s.irradiance.fill(front ? 0.5f : 4.0f);
+            s.high.fill(front ? 0.45f : 0.4f);
+            s.low.fill(front ? 0.0f : 2.0f);
+            s.alpha = front ? 1.0f : 0.25f;
+            s.depth = front ? 1.0f : 3.0f;
+            s.object = front ? 1 : 2;
+            return s;
+        });
+        inputs.path_class = view::PathClass::Diffuse;
+        for (std::uint32_t c = 0; c < 4; ++c) {
+            for (std::size_t i = 0; i < sum.pixel_count(); ++i)
+                sum.plane(c)[i] += inputs.color(c)[i] / float(Frames);
+        }
+        picture = session.restart(inputs).picture;
+    }
+    for (std::uint32_t y = 1; y + 1 < Size; ++y) {
+        for (std::uint32_t x = 0; x < Size; ++x) {
+            for (std::uint32_t c = 0; c < 4; ++c)
+                EXPECT_NEAR(picture.row(c, y)[x], sum.row(c, y)[x], 2e-4f) << x << " " << y;
+        }
+    }
+}
+
 TEST(PsvgfHistory, ResetForgets) {
     const PlanesScene scene = wall_alone();
     const auto camera = looking_at(scene, {}, Width, Height);

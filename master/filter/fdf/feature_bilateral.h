@@ -16,6 +16,15 @@ struct FeatureSettings {
 
 inline constexpr std::uint32_t FeatureMaxRadius = 16;
 
+// A change of all pixels at once, and what it does to the picture: the change of colour is the standard deviation of
+// each component times the sign, that of the shading is given, and both are scaled by a small step. The response is
+// measured in half of one of ProbeSpacing rows and divided by the step.
+struct Probe {
+    const Planes &signs, &shading;  // 1 component; +1 or -1; a change at full scale
+    Planes &change, &response;      // 1 component: summed over r, g, b, and 0 where not measured
+};
+inline constexpr std::uint32_t ProbeSpacing = 4;
+
 // Albedo components below it are not divided out: light from such surfaces is not diffusely reflected.
 inline constexpr float DemodulationFloor = 0.01f;
 
@@ -38,9 +47,10 @@ class FeatureBilateral {
   public:
     // `shading` (in units of its own mean, 1 component) and `classes` as for NlMeans; Albedo and Normal are
     // ignored if the inputs lack them. `out` has Inputs::color_components(); `self_weight` gets the weight of
-    // the pixel in its own result, 1 component. False: stopped.
+    // the pixel in its own result, 1 component. `probe` may be null. False: stopped.
     bool run(const Inputs& inputs, const Planes& shading, const Planes& classes,
-             const FeatureSettings& settings, Planes& out, Planes& self_weight, RunContext& context);
+             const FeatureSettings& settings, Planes& out, Planes& self_weight, RunContext& context,
+             const Probe* probe = nullptr);
 
   private:
     Scratch scratch_;

@@ -1,5 +1,6 @@
 #include "master/filter/fdf/nl_means.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "master/filter/kernels.h"
@@ -31,8 +32,8 @@ struct Layout {
 
     std::size_t window_size() const { return std::size_t{columns} * rows + PackSize; }
     std::size_t total() const {
-        return 3 * window_size() + pair_columns + PackSize + std::size_t{sum_columns} * pair_rows +
-               2 * std::size_t{sum_columns} * (rows - 2 * halo);
+        return 4 * window_size() + pair_columns + PackSize + std::size_t{sum_columns} * pair_rows +
+               3 * std::size_t{sum_columns} * (rows - 2 * halo);
     }
 };
 
@@ -49,27 +50,42 @@ Pack pair_distance(Pack va, Pack vb, Pack ca, Pack cb, Pack variance_a, Pack var
     }
 }
 
+// The tile without its halo.
+void copy_centre(const Tile& tile, const Layout& layout, const float* window, float* to) {
+    const float* from = window + std::size_t{layout.halo} * layout.columns + layout.halo;
+    for (std::uint32_t y = 0; y < tile.height; ++y, from += layout.columns, to += layout.sum_columns)
+        std::copy_n(from, layout.sum_columns, to);
+}
+
+void divide_tile(const Tile& tile, const Layout& layout, const float* sums, const float* weights,
+                 Planes& out) {
+    for (std::uint32_t y = 0; y < tile.height; ++y) {
+        float* to = out.row(0, tile.y + y) + tile.x;
+        const std::size_t from = std::size_t{y} * layout.sum_columns;
+        for (std::uint32_t x = 0; x < tile.width; ++x) to[x] = sums[from + x] / weights[from + x];
+    }
+}
+
 template <NlmForm Form, std::uint32_t Patch>
 void run_tile(const Tile& tile, const Layout& layout, const NlmSettings& settings, float* scratch,
-              Planes& out) {
+              Planes& out, Planes* out_change) {
     constexpr std::uint32_t Side = 2 * Patch + 1;
     const float* values = scratch;
     const float* variances = values + layout.window_size();
     const float* classes = variances + layout.window_size();
-    float* pairs = scratch + 3 * layout.window_size();
+    const float* changes = classes + layout.window_size();
+    float* pairs = scratch + 4 * layout.window_size();
     float* row_cdf = pairs + layout.pair_columns + PackSize;
     float* sums = row_cdf + std::size_t{layout.sum_columns} * layout.pair_rows;
     float* weights = sums + std::size_t{layout.sum_columns} * tile.height;
+    float* changed = weights + std::size_t{layout.sum_columns} * tile.height;
     const float k2 = settings.k * settings.k;
     const std::size_t columns = layout.columns;
     const std::size_t centre = layout.halo * columns + layout.halo;
 
-    for (std::uint32_t y = 0; y < tile.height; ++y) {
-        for (std::uint32_t x = 0; x < layout.sum_columns; ++x) {
-            sums[y * layout.sum_columns + x] = values[centre + y * columns + x];
-            weights[y * layout.sum_columns + x] = 1.0f;
-        }
-    }
+    copy_centre(tile, layout, values, sums);
+    if (out_change) copy_centre(tile, layout, changes, changed);
+    std::fill_n(weights, std::size_t{layout.sum_columns} * tile.height, 1.0f);
     const auto radius = static_cast<std::int64_t>(settings.radius);
     for (std::int64_t oy = -radius; oy <= radius; ++oy) {
         for (std::int64_t ox = -radius; ox <= radius; ++ox) {
@@ -97,6 +113,7 @@ void run_tile(const Tile& tile, const Layout& layout, const NlmSettings& setting
                 const float* from = row_cdf + std::size_t{y} * layout.sum_columns;
                 float* sum = sums + std::size_t{y} * layout.sum_columns;
                 float* weight = weights + std::size_t{y} * layout.sum_columns;
+                float* change = changed + std::size_t{y} * layout.sum_columns;
                 for (std::uint32_t x = 0; x < layout.sum_columns; x += PackSize) {
                     Pack d = load(from + x);
                     for (std::uint32_t i = 1; i < Side; ++i) d += load(from + i * layout.sum_columns + x);
@@ -110,18 +127,17 @@ void run_tile(const Tile& tile, const Layout& layout, const NlmSettings& setting
                     w = where_equal(load(kind), load(kind + offset), w);
                     store(sum + x, load(sum + x) + w * load(values + row + x + offset));
                     store(weight + x, load(weight + x) + w);
+                    if (out_change)
+                        store(change + x, load(change + x) + w * load(changes + row + x + offset));
                 }
             }
         }
     }
-    for (std::uint32_t y = 0; y < tile.height; ++y) {
-        float* to = out.row(0, tile.y + y) + tile.x;
-        const std::size_t from = std::size_t{y} * layout.sum_columns;
-        for (std::uint32_t x = 0; x < tile.width; ++x) to[x] = sums[from + x] / weights[from + x];
-    }
+    divide_tile(tile, layout, sums, weights, out);
+    if (out_change) divide_tile(tile, layout, changed, weights, *out_change);
 }
 
-using TileFunction = void (*)(const Tile&, const Layout&, const NlmSettings&, float*, Planes&);
+using TileFunction = void (*)(const Tile&, const Layout&, const NlmSettings&, float*, Planes&, Planes*);
 
 template <NlmForm Form>
 TileFunction function_for(std::uint32_t patch) {
@@ -142,7 +158,8 @@ TileFunction function_for(std::uint32_t patch) {
 }  // namespace
 
 bool NlMeans::run(const Planes& values, const Planes& variances, const Planes& classes,
-                  const NlmSettings& settings, Planes& out, RunContext& context) {
+                  const NlmSettings& settings, Planes& out, RunContext& context, const Planes* change,
+                  Planes* out_change) {
     const TileFunction function = settings.form == NlmForm::Thesis
                                       ? function_for<NlmForm::Thesis>(settings.patch)
                                       : function_for<NlmForm::Standard>(settings.patch);
@@ -153,7 +170,8 @@ bool NlMeans::run(const Planes& values, const Planes& variances, const Planes& c
         const Layout layout(tile, settings);
         float* const scratch = scratch_.local();
         float* to = scratch;
-        for (const Planes* plane : {&values, &variances, &classes}) {
+        for (const Planes* plane : {&values, &variances, &classes, change}) {
+            if (!plane) continue;
             copy_window(plane->width(), plane->height(), std::int64_t{tile.x} - layout.halo,
                         std::int64_t{tile.y} - layout.halo, layout.columns, layout.rows, to, layout.columns,
                         plane == &classes ? Outside : 0.0f,
@@ -163,7 +181,7 @@ bool NlMeans::run(const Planes& values, const Planes& variances, const Planes& c
             std::fill_n(to + std::size_t{layout.columns} * layout.rows, PackSize, 0.0f);
             to += layout.window_size();
         }
-        function(tile, layout, settings, scratch, out);
+        function(tile, layout, settings, scratch, out, change ? out_change : nullptr);
     });
 }
 

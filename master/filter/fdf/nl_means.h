@@ -35,9 +35,11 @@ inline constexpr float NlmEpsilon = 1e-10f;
 class NlMeans {
   public:
     // values in [0, 1e9], variances in [0, 1e18], classes as numbers of PixelClass; one component each.
+    // With `change`, small changes of the values, `out_change` gets those of `out`, as if weights did not change.
     // False: stopped.
     bool run(const Planes& values, const Planes& variances, const Planes& classes,
-             const NlmSettings& settings, Planes& out, RunContext& context);
+             const NlmSettings& settings, Planes& out, RunContext& context, const Planes* change = nullptr,
+             Planes* out_change = nullptr);
 
   private:
     Scratch scratch_;

@@ -28,6 +28,12 @@ void weigh(Pixels& p, const Factor& factor) {
     }
 }
 
+void weigh_own(const Pixels& p, float* to) {
+    for (std::uint32_t x = 0; x < p.count; ++x) {
+        to[x] = p.blend[x] + (1.0f - p.blend[x]) * central_weight(p.reduction[x]);
+    }
+}
+
 void mix(const Pixels& p, const float* radiance, const float* low, const float* unfiltered,
          const float* filtered, float clamp, float* to) {
     for (std::uint32_t x = 0; x < p.count; ++x) {
@@ -74,6 +80,7 @@ bool compose(const Inputs& inputs, const Light& light, const Field& filtered, co
                     to[i] = s < 1.0f ? s * u + (1.0f - s) * smooth[i] : alpha[i];
                 }
             }
+            if (maps.self_weight) weigh_own(p, maps.self_weight->row(0, y) + x);
             if (maps.blend) std::copy_n(p.blend.data(), p.count, maps.blend->row(0, y) + x);
             if (maps.smoothed_variance) {
                 std::copy_n(p.variance.data(), p.count, maps.smoothed_variance->row(0, y) + x);

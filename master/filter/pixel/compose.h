@@ -12,10 +12,11 @@ struct Blend {
     float spike_clamp = 2.0f;  // c; 0: none
 };
 
-// Maps of one component for debugging; empty ones are not written.
+// Maps of one component; empty ones are not written.
 struct BlendMaps {
     Planes* smoothed_variance = nullptr;  // of the luminance of the mean
     Planes* blend = nullptr;              // s
+    Planes* self_weight = nullptr;        // of a pixel's own light in the picture: s + (1 - s) a
 };
 
 // L_lv + s L_u' + (1 - s) L_f (Schwenk 3.1), s per pixel from the perceived variances. The variance in

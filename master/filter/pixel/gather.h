@@ -109,10 +109,14 @@ bool with_shapes(const Guide& guide, const Field& field, const Function& functio
         switch (field.values.components()) {
             case 2:
                 return function(features, std::integral_constant<std::size_t, 2>());
+            case 3:
+                return function(features, std::integral_constant<std::size_t, 3>());
             case 4:
                 return function(features, std::integral_constant<std::size_t, 4>());
-            default:
+            case 5:
                 return function(features, std::integral_constant<std::size_t, 5>());
+            default:
+                return function(features, std::integral_constant<std::size_t, 6>());
         }
     };
     return guide.components() == 4 ? with(std::integral_constant<std::size_t, 4>())

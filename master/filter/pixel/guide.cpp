@@ -1,6 +1,7 @@
 #include "master/filter/pixel/guide.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace tessera::filter::pixel {
@@ -17,6 +18,22 @@ constexpr float MostColor = 1e15f;
 // exp(-d^2 / (2 sigma^2)) = 2^-(scale d)^2.
 float scale_of(float sigma) {
     return std::sqrt(0.5f * 1.44269504f) / std::max(sigma, 1e-12f);
+}
+
+// CIE 15:2004, with the white of linear sRGB, in hundredths.
+void convert_to_lab(float* r, float* g, float* b, std::uint32_t width) {
+    const auto f = [](float t) {
+        constexpr float Linear = 216.0f / 24389.0f;
+        return t > Linear ? std::cbrt(t) : (841.0f / 108.0f) * std::max(t, 0.0f) + 4.0f / 29.0f;
+    };
+    for (std::uint32_t x = 0; x < width; ++x) {
+        const float fx = f(0.433953f * r[x] + 0.376219f * g[x] + 0.189828f * b[x]);
+        const float fy = f(0.212671f * r[x] + 0.715160f * g[x] + 0.072169f * b[x]);
+        const float fz = f(0.017758f * r[x] + 0.109477f * g[x] + 0.872765f * b[x]);
+        r[x] = 1.16f * fy - 0.16f;
+        g[x] = 5.0f * (fx - fy);
+        b[x] = 2.0f * (fy - fz);
+    }
 }
 
 constexpr std::int64_t Pad = 8;
@@ -99,11 +116,22 @@ void Guide::prepare(const Inputs& inputs, const Holes& holes, const Tolerance& t
                 repeat_border(features_.row(first + c, y), inputs.width);
             }
         };
-        vector(Channel::Headlight, 0, scale_of(tolerance.color));
+        const bool lab = tolerance.metric == ColorMetric::Lab;
+        vector(Channel::Headlight, 0, lab ? 1.0f : scale_of(tolerance.color));
+        if (lab) {
+            convert_to_lab(features_.row(0, y), features_.row(1, y), features_.row(2, y), inputs.width);
+            for (std::uint32_t c = 0; c < 3; ++c) {
+                float* row = features_.row(c, y);
+                for (std::uint32_t x = 0; x < inputs.width; ++x) row[x] *= scale_of(tolerance.color);
+                repeat_border(row, inputs.width);
+            }
+        }
         if (normals) vector(Channel::Normal, Depth + 1, scale_of(tolerance.normal));
         const float scale = scale_of(tolerance.depth);
-        fill(Depth, y, component(Channel::Depth, 0), [scale](float depth) {
-            const float hit = std::min(scale * depth, MostHit);
+        const bool relative = tolerance.depth_metric == DepthMetric::Relative;
+        fill(Depth, y, component(Channel::Depth, 0), [scale, relative](float depth) {
+            const float measured = relative ? std::log(std::max(depth, 1e-30f)) : depth;
+            const float hit = std::min(scale * measured, MostHit);
             return depth < std::numeric_limits<float>::infinity() ? hit : Miss;
         });
         isolate_border(features_.row(Depth, y), inputs.width);

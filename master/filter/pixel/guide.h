@@ -21,11 +21,18 @@ class Holes {
     std::vector<std::uint32_t> origin_;  // empty until the first hole
 };
 
+// Linear RGB, or CIELAB in hundredths (L* of white is 1), whose distances are more alike in the dark and the bright.
+enum class ColorMetric { Linear, Lab };
+// Metres, or the ratio of depths: then sigma_d is that of the logarithm, which does not depend on the scene's size.
+enum class DepthMetric { Absolute, Relative };
+
 // Standard deviations of the range weights.
 struct Tolerance {
     float color = 0.02f;  // sigma_c, linear
     float depth = 2.0f;   // sigma_d, metres
     float normal = 0.0f;  // sigma_n of unit normals' difference; 0: normals do not count
+    ColorMetric metric = ColorMetric::Linear;
+    DepthMetric depth_metric = DepthMetric::Absolute;
 };
 
 // Which pixels contribute: only those with samples, or also holes that the first sweep has filled.

@@ -23,12 +23,21 @@ struct Steps {
     std::int64_t first, last;
 };
 
+// The same means of other weight, so that a mixture with others is one of the means and not of their samples.
+template <std::size_t Layers>
+void set_weight(Pack weight, Result<Layers>& result) {
+    // 0 where there are no similar neighbours.
+    const Pack factor = weight / max(result.values[Layers - 1], all(1e-18f));
+    for (Pack& value : result.values) value *= factor;
+    result.reduction *= factor * factor;
+}
+
 // Replaces the two-sided filter by the mixture of two one-sided ones in proportion to the belief in the edge
 // model (Schwenk 3.19, 3.20). r is an upper bound: squares of mixtures are convex in belief, and the two
 // sides have only the pixel itself in common, which differs from at least one of them.
 template <std::size_t Features, std::size_t Layers>
 void recover_edges(const Neighbourhood<Features, Layers>& from, const std::array<Pack, Features>& target,
-                   Pack spread, Steps steps, const Across& line, Result<Layers>& result) {
+                   Pack spread, Steps steps, const Across& line, bool weighted, Result<Layers>& result) {
     const EdgeModel<Features> model =
         edge_model<Features>(from.sources, target, line.stride, line.before, line.after);
     if (largest(model.belief) < 0.01f) return;
@@ -40,7 +49,11 @@ void recover_edges(const Neighbourhood<Features, Layers>& from, const std::array
     const Pack belief = found > 0.05f ? model.belief : Pack{};
     gather(from, model.low, spread, 0.0f, 0, 0, 1, line.stride, low);
     gather(from, model.high, spread, 0.0f, 0, 0, 1, line.stride, high);
-    const Result<Layers> one = normalised(low), two = normalised(high);
+    Result<Layers> one = normalised(low), two = normalised(high);
+    if (weighted) {
+        set_weight(result.values[Layers - 1], one);
+        set_weight(result.values[Layers - 1], two);
+    }
     const Pack a = model.coverage, b = 1.0f - model.coverage;
     for (std::size_t k = 0; k < Layers; ++k) {
         const Pack edge = b * one.values[k] + a * two.values[k];
@@ -70,7 +83,7 @@ void filter_block(const Neighbourhood<Features, Layers>& near, const std::array<
     gather(near, target, spread, 0.0f, steps.first, steps.last, plan.spacing, across.stride, sums);
     Result<Layers> result = normalised(sums);
     if (plan.edges == Edges::Recover && steps.first < 0 && steps.last > 0) {
-        recover_edges(near, target, spread, steps, across, result);
+        recover_edges(near, target, spread, steps, across, to.weighted, result);
     }
     keep_or_store(sums, near, result, y, x, to);
 }

@@ -20,7 +20,7 @@ struct Sweep {
 using Strips = std::vector<std::vector<float>>;
 
 // Filters `from` into `to`, cut at 3 sigma of the widest of eight neighbouring pixels. r of the result is the
-// sum of squared weights times r of the inputs. Fields of 2, 4 or 5 components. Pixels without similar
+// sum of squared weights times r of the inputs. Fields of 2 to 6 components. Pixels without similar
 // neighbours keep their values. False: stopped.
 bool sweep(const Guide& guide, const Widths& widths, const Sweep& plan, const Field& from, Field& to,
            Strips& strips, RunContext& context);

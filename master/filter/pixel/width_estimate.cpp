@@ -10,14 +10,16 @@ namespace tessera::filter::pixel {
 bool WidthEstimate::run(const Guide& guide, const Light& light, const Inputs& inputs, const Field& field,
                         const AdaptiveWidths& rule, Widths& widths, Strips& strips, RunContext& context) {
     const std::uint32_t width = inputs.width, height = inputs.height;
-    field_.fit(width, height, 2);
-    scratch_.fit(width, height, 2);
+    const bool weighted = field.weighted;
+    field_.fit(width, height, weighted ? 3 : 2, weighted);
+    scratch_.fit(width, height, weighted ? 3 : 2, weighted);
     widths.fit(width, height, 1);
     for_rows(context, height, [&](std::uint32_t y) {
         const float *r = field.values.row(0, y), *g = field.values.row(1, y), *b = field.values.row(2, y);
         float* to = field_.values.row(0, y);
         for (std::uint32_t x = 0; x < width; ++x) to[x] = luminance(r[x], g[x], b[x]);
         std::copy_n(field.values.row(Field::Variance, y), width, field_.values.row(1, y));
+        if (weighted) std::copy_n(field.weight_row(y), width, field_.values.row(2, y));
         std::fill_n(widths.row(0, y), width, rule.base);
     });
     const Sweep rows{.direction = Direction::Rows, .spacing = 2, .sources = Sources::Samples};
@@ -27,8 +29,15 @@ bool WidthEstimate::run(const Guide& guide, const Light& light, const Inputs& in
     return for_rows(context, height, [&](std::uint32_t y) {
         float* sigma = widths.row(0, y);
         const float *r = light.low().row(0, y), *g = light.low().row(1, y), *b = light.low().row(2, y);
-        const float *high = field_.values.row(0, y), *variance = field_.values.row(1, y);
+        float *high = field_.values.row(0, y), *variance = field_.values.row(1, y);
         const float* n = inputs.counts.row(0, y);
+        if (weighted) {
+            const float* weight = field_.weight_row(y);
+            for (std::uint32_t x = 0; x < width; ++x) {
+                high[x] /= weight[x];
+                variance[x] /= weight[x] * std::max(n[x], 1.0f);
+            }
+        }
         for (std::uint32_t x = 0; x < width; ++x) {
             const float background = high[x] + luminance(r[x], g[x], b[x]);
             const float u = perceived_variance(variance[x], background);

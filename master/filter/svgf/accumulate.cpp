@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "master/filter/svgf/demodulate.h"
+
 namespace tessera::filter::svgf {
 
 namespace {
@@ -51,10 +53,31 @@ bool test_light(const Planes& history, const State& state, float z0, Planes& tru
     });
 }
 
+// One row, by the own weights.
+void blend_colors(const Planes& history, const Albedos& albedos, std::uint32_t y, PaddedPlanes& color) {
+    const std::size_t width = history.width();
+    const float* own = color.row(OwnWeightComponent, y);
+    for (std::uint32_t c = 0; c < 3; ++c) {
+        float* __restrict to = color.row(c, y);
+        const float* old = history.row(c, y);
+        if (albedos.film == nullptr) {
+            for (std::size_t x = 0; x < width; ++x) to[x] = own[x] * to[x] + (1.0f - own[x]) * old[x];
+            continue;
+        }
+        const float *film = albedos.film->row(c, y), *before = albedos.history->row(c, y);
+        for (std::size_t x = 0; x < width; ++x) {
+            const float here = own[x] * std::max(film[x], LeastAlbedo);
+            const float there = (1.0f - own[x]) * std::max(before[x], LeastAlbedo);
+            const float part = here / (here + there);
+            to[x] = part * to[x] + (1.0f - part) * old[x];
+        }
+    }
+}
+
 }  // namespace
 
-bool accumulate(const Planes& history, const Accumulation& how, State& state, Planes& trust,
-                RunContext& context) {
+bool accumulate(const Planes& history, const Accumulation& how, const Albedos& albedos, State& state,
+                Planes& trust, RunContext& context) {
     const bool tested = how.z0 > 0.0f;
     if (tested && !test_light(history, state, how.z0, trust, context)) return false;
     const float keep = std::log1p(-how.r0);
@@ -67,10 +90,7 @@ bool accumulate(const Planes& history, const Accumulation& how, State& state, Pl
         float* __restrict variance = state.moments.row(SampleVariance, y);
         const float* old_mean = history.row(HistoryMoments + MeanLuminance, y);
         const float* old_variance = history.row(HistoryMoments + SampleVariance, y);
-        float *__restrict red = state.color.row(0, y), *__restrict green = state.color.row(1, y),
-              *__restrict blue = state.color.row(2, y);
-        const float *old_red = history.row(0, y), *old_green = history.row(1, y),
-                    *old_blue = history.row(2, y);
+        float* __restrict own = state.color.row(OwnWeightComponent, y);
         for (std::size_t x = 0; x < width; ++x) {
             const float old = old_age[x] * how.age_scale * (tested ? trusted[x] : 1.0f);
             const float n = age[x];
@@ -78,14 +98,13 @@ bool accumulate(const Planes& history, const Accumulation& how, State& state, Pl
             const float filled = old > 0.0f ? 0.0f : 1.0f;
             const float r = n > 0.0f ? (old > 0.0f ? weight : 1.0f) : filled;
             const float q = 1.0f - r;
+            own[x] = r;
             age[x] = n > 0.0f ? std::min(n + old, n / r) : old;
-            red[x] = r * red[x] + q * old_red[x];
-            green[x] = r * green[x] + q * old_green[x];
-            blue[x] = r * blue[x] + q * old_blue[x];
             const float difference = mean[x] - old_mean[x];
             variance[x] = r * variance[x] + q * old_variance[x] + r * q * difference * difference;
             mean[x] = r * mean[x] + q * old_mean[x];
         }
+        blend_colors(history, albedos, y, state.color);
     });
 }
 

@@ -7,7 +7,7 @@ namespace tessera::filter::svgf {
 
 // The accumulated state of one signal, per pixel.
 struct State {
-    PaddedPlanes color;  // r, g, b; component 3 holds the variance for the wavelet transform
+    PaddedPlanes color;  // SignalComponents; the variance is that of the wavelet transform
     Planes moments;      // mean luminance, E[L^2] - E[L]^2 of one sample (E-D6), age in samples
 };
 inline constexpr std::uint32_t MeanLuminance = 0, SampleVariance = 1, Age = 2, MomentCount = 3;
@@ -29,9 +29,16 @@ inline float new_weight(float n, float age, float keep) {
     return std::max(least, mean);
 }
 
+// Of the film and of its history, 3 components each, where every pixel has the same expected value in both.
+struct Albedos {
+    const Planes *film = nullptr, *history = nullptr;
+};
+
 // Blends the film in `state` with the history, moments with the same weights (E-D2, E-D5; the variance by an
-// equivalent rule without cancellation). Pixels without samples keep their history. False: stopped.
-bool accumulate(const Planes& history, const Accumulation& how, State& state, Planes& trust,
-                RunContext& context);
+// equivalent rule without cancellation). Pixels without samples keep their history. With albedos,
+// colours are weighted by them as well, so that their product with the mean albedo is the mean light of pixels that see
+// several surfaces. False: stopped.
+bool accumulate(const Planes& history, const Accumulation& how, const Albedos& albedos, State& state,
+                Planes& trust, RunContext& context);
 
 }  // namespace tessera::filter::svgf

@@ -137,6 +137,8 @@ void gather(const PaddedPlanes& from, PaddedPlanes& to, std::uint32_t y, std::si
     const float *b0 = from.row(0, down), *b1 = from.row(1, down), *b2 = from.row(2, down),
                 *b3 = from.row(3, down);
     float *out0 = to.row(0, y), *out1 = to.row(1, y), *out2 = to.row(2, y), *out3 = to.row(3, y);
+    const float* own = from.row(OwnWeightComponent, y);
+    float* to_own = to.row(OwnWeightComponent, y);
     const auto sum = [s](const float* m, const float* a, const float* b, std::ptrdiff_t x, float centre,
                          float r, float l, float d, float u, float dr, float ul, float dl, float ur) {
         return centre * m[x] + ((r * m[x + s] + l * m[x - s]) + (d * b[x] + u * a[x])) +
@@ -153,6 +155,7 @@ void gather(const PaddedPlanes& from, PaddedPlanes& to, std::uint32_t y, std::si
         out3[x] = sum(m3, a3, b3, x, Centre * Centre, r * r, l * l, d * d, u * u, dr * dr, ul * ul, dl * dl,
                       ur * ur) *
                   scale * scale;
+        to_own[x] = own[x] * (Centre * scale);
     }
 }
 

@@ -17,15 +17,16 @@ inline constexpr std::uint32_t MaxLevels = 7;  // the margin of PaddedPlanes is 
 std::uint32_t level_of(std::uint32_t pass, std::uint32_t count, LevelOrder order);
 
 // One level of the edge-stopping stationary wavelet transform (E-D8, E-D12): 3x3 taps (1 2 1)x(1 2 1)/16,
-// 2^level pixels apart. Components 0-2 are a colour, 3 its variance, propagated with squared weights (E-D13).
+// 2^level pixels apart. The variance is propagated with squared weights (E-D13). The own weight is multiplied by the
+// centre's: no sum of different steps leads back to the pixel.
 class AtrousWavelet {
   public:
-    // `from` and `to` are 4 components of the guides' size, and not the same. False: stopped.
+    // `from` and `to` are SignalComponents of the guides' size, and not the same. False: stopped.
     bool run(const Guides& guides, const EdgeStops& stops, std::uint32_t level, const PaddedPlanes& from,
              PaddedPlanes& to, RunContext& context);
 
-    // Read: colour, variance, normals, inverse depth, slopes, ids; written: colour, variance.
-    static constexpr double BytesPerPixel = 4.0 * (4 + 3 + 1 + 2 + 1 + 4);
+    // Read: the signal, normals, inverse depth, slopes, ids; written: the signal.
+    static constexpr double BytesPerPixel = 4.0 * (5 + 3 + 1 + 2 + 1 + 5);
 
   private:
     struct Scratch;

@@ -190,6 +190,9 @@ class Level5x5 {
             float* __restrict to = to_.row(c, row);
             for (std::size_t x = 0; x < width; ++x) to[x] = values[x] / (c == 3 ? sum[x] * sum[x] : sum[x]);
         }
+        const float* own = from_.row(OwnWeightComponent, row);
+        float* __restrict to = to_.row(OwnWeightComponent, row);
+        for (std::size_t x = 0; x < width; ++x) to[x] = own[x] * Centre / sum[x];
     }
 
     const Guides& guides_;

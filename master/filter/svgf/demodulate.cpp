@@ -8,8 +8,6 @@ namespace {
 
 using frame::Channel;
 
-constexpr float LeastAlbedo =
-    1e-4f;  // below it the light carries no information on the irradiance, and is not visible
 constexpr float MostVariance = 1e36f;  // so that sums over a window stay finite
 
 // Standard deviation of the luminance if all components vary together, as light does: an upper bound.
@@ -48,6 +46,7 @@ bool demodulate(const Inputs& inputs, State& state, RunContext& context) {
         float* __restrict l = state.moments.row(MeanLuminance, y);
         float* __restrict v = state.moments.row(SampleVariance, y);
         float* __restrict age = state.moments.row(Age, y);
+        std::fill_n(state.color.row(OwnWeightComponent, y), width, 1.0f);
 #pragma GCC ivdep  // the state is no part of the film
         for (std::size_t x = 0; x < width; ++x) {
             const float n = counts[x];
@@ -92,6 +91,7 @@ bool take_rest(const Inputs& inputs, const Planes& rest, State& state, RunContex
         float* __restrict l = state.moments.row(MeanLuminance, y);
         float* __restrict v = state.moments.row(SampleVariance, y);
         float* __restrict age = state.moments.row(Age, y);
+        std::fill_n(state.color.row(OwnWeightComponent, y), width, 1.0f);
         for (std::size_t x = 0; x < width; ++x) {
             const float deviation = luma_deviation(vr[x], vg[x], vb[x]);
             l[x] = luma(red[x], green[x], blue[x]);

@@ -7,6 +7,9 @@ namespace tessera::filter::svgf {
 // Splits the film into signals: light of the diffuse lobe divided by the albedo, and the rest of the
 // radiance.
 
+// Below it the light carries no information on the irradiance, and is not visible.
+inline constexpr float LeastAlbedo = 1e-4f;
+
 // HighVariance holds the light of the diffuse lobe, and LowVariance the rest.
 bool knows_diffuse(const Inputs& inputs);
 

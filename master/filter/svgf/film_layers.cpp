@@ -87,6 +87,46 @@ bool FilmLayers::fill_holes(const Inputs& inputs, std::span<Signal> signals, Gui
     return hole_fill_.run(inputs.counts, guides.ids, filled_, context);
 }
 
+void FilmLayers::keep(const Inputs& inputs) {
+    copy(albedo_, own_albedo_, inputs);
+    copy(rest_, own_rest_, inputs);
+    if (alpha_ != nullptr) {
+        copy(alpha_, own_alpha_, inputs);
+    } else {
+        own_alpha_ = {};
+    }
+    known_ = true;
+}
+
+void FilmLayers::restart() {
+    has_before_ = known_;
+    if (!known_) return;
+    std::swap(own_albedo_, albedo_before_);
+    std::swap(own_rest_, rest_before_);
+    std::swap(own_alpha_, alpha_before_);
+    known_ = false;
+}
+
+bool FilmLayers::blend_history(const State& light, Report& report, RunContext& context) {
+    PassTimer timer(report, "layers", 4.0 * (3 * 7 + 1));
+    const auto blend = [&](const Planes*& layer, Planes& own, const Planes& before) {
+        const Planes& film = *layer;
+        if (&film != &own) own.resize(film.width(), film.height(), film.components());
+        layer = &own;
+        return for_rows(context, film.height(), [&](std::uint32_t y) {
+            const float* weight = light.color.row(OwnWeightComponent, y);
+            for (std::uint32_t c = 0; c < film.components(); ++c) {
+                const float *now = film.row(c, y), *old = before.row(c, y);
+                float* to = own.row(c, y);
+                for (std::uint32_t x = 0; x < film.width(); ++x)
+                    to[x] = weight[x] * now[x] + (1.0f - weight[x]) * old[x];
+            }
+        });
+    };
+    return blend(albedo_, own_albedo_, albedo_before_) && blend(rest_, own_rest_, rest_before_) &&
+           (alpha_ == nullptr || blend(alpha_, own_alpha_, alpha_before_));
+}
+
 bool FilmLayers::compose(const Inputs& inputs, std::span<const Signal> signals, Planes& picture,
                          Report& report, RunContext& context) const {
     PassTimer timer(report, "compose", 4.0 * 12);

@@ -21,6 +21,19 @@ class FilmLayers {
     bool read(const Inputs& inputs, bool holes, std::span<Signal> signals, Guides& guides, Report& report,
               RunContext& context);
 
+    // For films of a still picture, whose layers have a history like the signals: keep() after a film, restart() before
+    // the next one.
+    void keep(const Inputs& inputs);
+    void restart();
+    void forget() { known_ = has_before_ = false; }
+    // Of the film that was read.
+    bool has_history() const {
+        return has_before_ && (alpha_ == nullptr || alpha_before_.pixel_count() == alpha_->pixel_count());
+    }
+    Albedos albedos() const { return {albedo_, &albedo_before_}; }
+    // Layers become their mean with the history, in which the film has the weight of own samples of `light`. False: stopped.
+    bool blend_history(const State& light, Report& report, RunContext& context);
+
     // picture = rest + albedo x irradiance.
     bool compose(const Inputs& inputs, std::span<const Signal> signals, Planes& picture, Report& report,
                  RunContext& context) const;
@@ -30,7 +43,9 @@ class FilmLayers {
 
     HoleFill hole_fill_;
     std::vector<PlaneView> filled_;
-    Planes own_albedo_, own_rest_, own_alpha_;  // copies whose holes are filled
+    Planes own_albedo_, own_rest_, own_alpha_;  // copies whose holes are filled, or with the history
+    Planes albedo_before_, rest_before_, alpha_before_;
+    bool known_ = false, has_before_ = false;
     const Planes *albedo_ = nullptr, *rest_ = nullptr, *alpha_ = nullptr;
 };
 

@@ -5,6 +5,10 @@
 
 namespace tessera::filter::svgf {
 
+// Components of a signal: r, g, b, the variance of its luminance, and the weight that the pixel's own samples of this
+// film have in the colour.
+inline constexpr std::uint32_t VarianceComponent = 3, OwnWeightComponent = 4, SignalComponents = 5;
+
 // Planes with zero padding before and after each row, so that loops may read up to Margin pixels out of
 // bounds. Only [0, width) of a row is ever written.
 class PaddedPlanes {

@@ -218,6 +218,34 @@ class Lookup {
 
 }  // namespace
 
+namespace {
+
+bool shows(const std::vector<std::uint32_t>& ids, std::uint32_t width, std::uint32_t height, std::uint32_t x,
+           std::uint32_t y, std::uint32_t id) {
+    for (std::uint32_t ty = y > 0 ? y - 1 : 0; ty <= std::min(y + 1, height - 1); ++ty) {
+        for (std::uint32_t tx = x > 0 ? x - 1 : 0; tx <= std::min(x + 1, width - 1); ++tx) {
+            if (ids[std::size_t{ty} * width + tx] == id) return true;
+        }
+    }
+    return false;
+}
+
+void copy_row(const Guides& now, const Guides& before, std::span<const HistoryView> from, std::uint32_t y,
+              Planes& to) {
+    const std::uint32_t width = to.width(), height = to.height();
+    for (std::uint32_t c = 0; c < from.size(); ++c)
+        std::copy_n(from[c].values + std::size_t{y} * from[c].pitch, width, to.row(c, y));
+    for (std::uint32_t x = 0; x < width; ++x) {
+        const std::size_t i = std::size_t{y} * width + x;
+        const bool same =
+            now.ids[i] == before.ids[i] || (shows(before.ids, width, height, x, y, now.ids[i]) &&
+                                            shows(now.ids, width, height, x, y, before.ids[i]));
+        for (std::uint32_t c = 0; c < from.size() && !same; ++c) to.row(c, y)[x] = 0.0f;
+    }
+}
+
+}  // namespace
+
 bool reproject(const Guides& now, const Guides& before, const Motion& motion, const SurfaceTests& tests,
                std::span<const HistoryView> from, Planes& to, RunContext& context) {
     const std::uint32_t width = now.inverse_depth.width(), height = now.inverse_depth.height();
@@ -226,6 +254,10 @@ bool reproject(const Guides& now, const Guides& before, const Motion& motion, co
         to = Planes(width, height, components);
     }
     return for_rows(context, height, [&](std::uint32_t y) {
+        if (motion.still) {
+            copy_row(now, before, from, y, to);
+            return;
+        }
         Lookup lookup(now, before, tests, from);
         const float *to_x = motion.position.row(0, y), *to_y = motion.position.row(1, y);
         const float* expected = motion.inverse_depth.row(0, y);

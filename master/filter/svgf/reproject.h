@@ -18,6 +18,7 @@ struct Motion {
     Planes position;        // 2: x, y; a pixel's centre is its integer. Far outside: not visible.
     Planes inverse_depth;   // 1: expected at that position
     bool identity = false;  // both cameras are the same
+    bool still = false;     // and nothing else has changed: every pixel has the same expected value
 };
 
 // False: stopped.
@@ -31,7 +32,8 @@ struct HistoryView {
 
 // Backward reprojection: the bilinear taps that pass the tests, renormalised; if none does and the camera has
 // moved, the mean of the surrounding 3x3 pixels that do; else 0 (disoccluded, with age 0). `to` has one
-// component per view.
+// component per view. In a still picture the same pixel is taken, whose samples may see several surfaces, if its surface
+// is among those of the 3x3 pixels in the other picture, both ways; otherwise the view differs in what it shows.
 bool reproject(const Guides& now, const Guides& before, const Motion& motion, const SurfaceTests& tests,
                std::span<const HistoryView> from, Planes& to, RunContext& context);
 

@@ -11,7 +11,7 @@ constexpr std::array<std::string_view, MaxLevels> LevelNames{
     "wavelet 0", "wavelet 1", "wavelet 2", "wavelet 3", "wavelet 4", "wavelet 5", "wavelet 6"};
 
 void fit_state(State& state, std::uint32_t width, std::uint32_t height) {
-    state.color.fit(width, height, 4);
+    state.color.fit(width, height, SignalComponents);
     if (state.moments.width() != width || state.moments.height() != height) {
         state.moments = Planes(width, height, MomentCount);
     }
@@ -21,7 +21,7 @@ void fit_state(State& state, std::uint32_t width, std::uint32_t height) {
 
 void Signal::fit(std::uint32_t width, std::uint32_t height) {
     fit_state(now_, width, height);
-    for (PaddedPlanes& level : levels_) level.fit(width, height, 4);
+    for (PaddedPlanes& level : levels_) level.fit(width, height, SignalComponents);
     known_ = true;
 }
 
@@ -36,7 +36,8 @@ void Signal::forget() {
 }
 
 bool Signal::blend_history(const Guides& now, const Guides& before, const Motion& motion,
-                           const Settings& settings, Report& report, RunContext& context) {
+                           const Settings& settings, const Albedos& albedos, Report& report,
+                           RunContext& context) {
     std::array<HistoryView, HistoryCount> views;
     for (std::uint32_t c = 0; c < 3; ++c) views[c] = {before_.color.row(c, 0), before_.color.pitch()};
     for (std::uint32_t m = 0; m < MomentCount; ++m) {
@@ -47,7 +48,7 @@ bool Signal::blend_history(const Guides& now, const Guides& before, const Motion
         if (!reproject(now, before, motion, settings.tests, views, history_, context)) return false;
     }
     PassTimer timer(report, "accumulate", 4.0 * (3 * HistoryCount + 2 * MomentCount));
-    return accumulate(history_, settings.accumulation, now_, trust_, context);
+    return accumulate(history_, settings.accumulation, albedos, now_, trust_, context);
 }
 
 bool Signal::filter(const Guides& guides, const Settings& settings, bool feedback, Report& report,
@@ -76,6 +77,22 @@ bool Signal::filter(const Guides& guides, const Settings& settings, bool feedbac
         }
     }
     return true;
+}
+
+void Signal::self_weights(std::span<float> weights) const {
+    const std::uint32_t width = filtered_->width();
+    for (std::uint32_t y = 0; y < filtered_->height(); ++y) {
+        const float *own = filtered_->row(OwnWeightComponent, y),
+                    *left = filtered_->row(VarianceComponent, y);
+        // Before the transform: the variance of a mean over the history, of which the film has this fraction.
+        const float *variance = now_.color.row(VarianceComponent, y),
+                    *fraction = now_.color.row(OwnWeightComponent, y);
+        float* __restrict to = weights.data() + std::size_t{y} * width;
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const float kept = fraction[x] * left[x] / std::max(variance[x], Tiny);
+            to[x] = std::min(std::max(2.0f * own[x] - kept, 0.0f), 1.0f);
+        }
+    }
 }
 
 bool Signal::feed_back(const PaddedPlanes& first_level, float limit, RunContext& context) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "master/filter/svgf/accumulate.h"
 #include "master/filter/svgf/atrous_wavelet.h"
 #include "master/filter/svgf/atrous_wavelet_5x5.h"
@@ -27,6 +29,7 @@ class Signal {
   public:
     // State that the film is written to: colour, mean luminance, variance of one sample, age = samples.
     State& now() { return now_; }
+    const State& now() const { return now_; }
     void fit(std::uint32_t width, std::uint32_t height);
     // A new film starts: the current state becomes history.
     void restart();
@@ -35,11 +38,15 @@ class Signal {
 
     // Reprojects the history to this picture and blends it in. False: stopped, as in the next ones.
     bool blend_history(const Guides& now, const Guides& before, const Motion& motion,
-                       const Settings& settings, Report& report, RunContext& context);
+                       const Settings& settings, const Albedos& albedos, Report& report, RunContext& context);
     // Variance and all levels; afterwards filtered() is the picture. Feedback is only used with a history.
     bool filter(const Guides& guides, const Settings& settings, bool feedback, Report& report,
                 RunContext& context);
     const PaddedPlanes& filtered() const { return *filtered_; }
+    // a of ConvergenceBlend for filtered(), per pixel in [0, 1]. The noise of U - F, relative to that of U, is
+    // 1 - 2 w + sum w^2 with the weight w of each pixel's samples in F; the last term is what the transform leaves of the
+    // variance.
+    void self_weights(std::span<float> weights) const;
 
   private:
     bool feed_back(const PaddedPlanes& first_level, float limit, RunContext& context);

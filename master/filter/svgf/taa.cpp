@@ -34,8 +34,16 @@ void take_nearer(const float* nearest, const float* x, const float* y, std::size
     }
 }
 
+using Texel = std::array<float, 4>;
+
+// Rows and columns around the previous picture that repeat its edges: those that the taps of a spline reach.
+constexpr std::uint32_t Before = 1, After = 2;
+
 struct Frame {
-    const Planes &picture, &before;
+    const Planes& picture;
+    const Texel* texels;   // of the previous picture at pixel (0, 0)
+    const float* alphas;   // the same, where there is a fourth component
+    std::ptrdiff_t pitch;  // of both
     const Guides& now;
     const Motion& motion;
     std::uint32_t width, height, components;
@@ -104,6 +112,45 @@ void gather_neighbourhood(const Frame& frame, const Piece& piece, Around& around
     }
 }
 
+// The four weights of a Catmull-Rom spline `t` behind the second one.
+std::array<float, 4> spline(float t) {
+    const float u = 1.0f - t;
+    return {-0.5f * t * u * u, 1.0f + t * t * (1.5f * t - 2.5f), 1.0f + u * u * (1.5f * u - 2.5f),
+            -0.5f * u * t * t};
+}
+
+// The previous picture at (px, py), which is inside.
+void interpolate(const Frame& frame, float px, float py, std::size_t k, Old& old) {
+    const auto x0 = static_cast<std::int32_t>(px), y0 = static_cast<std::int32_t>(py);
+    const std::array<float, 4> across = spline(px - static_cast<float>(x0)),
+                               down = spline(py - static_cast<float>(y0));
+    const std::ptrdiff_t corner = (y0 - 1) * frame.pitch + x0 - 1;
+    Texel sum{};
+    for (std::ptrdiff_t row = 0; row < 4; ++row) {
+        const Texel* texel = frame.texels + corner + row * frame.pitch;
+        const float weight = down[static_cast<std::size_t>(row)];
+        for (std::size_t c = 0; c < 4; ++c) {
+            sum[c] += weight * ((across[0] * texel[0][c] + across[1] * texel[1][c]) +
+                                (across[2] * texel[2][c] + across[3] * texel[3][c]));
+        }
+    }
+    // Where a spline exceeds the brightest of the four texels around, its divisor may reach 0.
+    const Texel* near = frame.texels + corner + frame.pitch + 1;
+    const float least =
+        std::min(std::min(near[0][3], near[1][3]), std::min(near[frame.pitch][3], near[frame.pitch + 1][3]));
+    const float scale = 1.0f / std::max(sum[3], least);
+    for (std::size_t c = 0; c < 3; ++c) old.color[c][k] = sum[c] * scale;
+    if (frame.components < 4) return;
+    float alpha = 0.0f;
+    for (std::ptrdiff_t row = 0; row < 4; ++row) {
+        for (std::ptrdiff_t column = 0; column < 4; ++column) {
+            alpha += across[static_cast<std::size_t>(column)] * down[static_cast<std::size_t>(row)] *
+                     frame.alphas[corner + row * frame.pitch + column];
+        }
+    }
+    old.color[3][k] = alpha * scale;
+}
+
 // Clamped to the neighbourhood's colours; `fresh`: minimum weight of the new picture, like `ratio`.
 void fetch_before(const Frame& frame, const Piece& piece, const Around& around, const float* fresh,
                   float ratio, Old& old) {
@@ -119,16 +166,7 @@ void fetch_before(const Frame& frame, const Piece& piece, const Around& around, 
             for (std::uint32_t c = 0; c < components; ++c) old.color[c][k] = 0.0f;
             continue;
         }
-        const auto x0 = static_cast<std::int32_t>(px), y0 = static_cast<std::int32_t>(py);
-        const std::int32_t right = x0 + 1 < static_cast<std::int32_t>(width) ? 1 : 0;
-        const std::size_t down = y0 + 1 < static_cast<std::int32_t>(height) ? width : 0;
-        const float fx = px - static_cast<float>(x0), fy = py - static_cast<float>(y0);
-        for (std::uint32_t c = 0; c < components; ++c) {
-            const float* up = frame.before.row(c, static_cast<std::uint32_t>(y0)) + x0;
-            const float* low = up + down;
-            old.color[c][k] = (1.0f - fy) * ((1.0f - fx) * up[0] + fx * up[right]) +
-                              fy * ((1.0f - fx) * low[0] + fx * low[right]);
-        }
+        interpolate(frame, px, py, k, old);
     }
     for (std::uint32_t c = 0; c < components; ++c) {
         for (std::size_t k = 0; k < piece.count; ++k) {
@@ -161,9 +199,37 @@ void blend(const Frame& frame, const Piece& piece, const Old& old, Planes& out) 
 
 }  // namespace
 
-bool antialias(const Planes& picture, const Planes& before, const Guides& now, const Motion& motion,
-               const Planes& newness, float ratio, Planes& out, RunContext& context) {
-    const Frame frame{picture, before, now, motion, picture.width(), picture.height(), picture.components()};
+bool Antialiasing::compress(const Planes& before, RunContext& context) {
+    const std::uint32_t width = before.width(), height = before.height();
+    const std::size_t pitch = Before + width + After;
+    texels_.resize(pitch * (Before + height + After));
+    if (before.components() == 4) alphas_.resize(texels_.size());
+    return for_rows(context, Before + height + After, [&](std::uint32_t row) {
+        const std::uint32_t y = std::min(row > Before ? row - Before : 0, height - 1);
+        const float *r = before.row(0, y), *g = before.row(1, y), *b = before.row(2, y);
+        const float* alpha = before.components() == 4 ? before.row(3, y) : nullptr;
+        for (std::size_t column = 0; column < pitch; ++column) {
+            const std::size_t x = std::min<std::size_t>(column > Before ? column - Before : 0, width - 1);
+            const float divisor = 1.0f / (1.0f + std::max(std::max(r[x], g[x]), std::max(b[x], 0.0f)));
+            texels_[row * pitch + column] = {r[x] * divisor, g[x] * divisor, b[x] * divisor, divisor};
+            if (alpha != nullptr) alphas_[row * pitch + column] = alpha[x] * divisor;
+        }
+    });
+}
+
+bool Antialiasing::run(const Planes& picture, const Planes& before, const Guides& now, const Motion& motion,
+                       const Planes& newness, float ratio, Planes& out, RunContext& context) {
+    if (!compress(before, context)) return false;
+    const std::size_t pitch = Before + before.width() + After, first = Before * pitch + Before;
+    const Frame frame{.picture = picture,
+                      .texels = texels_.data() + first,
+                      .alphas = alphas_.empty() ? nullptr : alphas_.data() + first,
+                      .pitch = static_cast<std::ptrdiff_t>(pitch),
+                      .now = now,
+                      .motion = motion,
+                      .width = picture.width(),
+                      .height = picture.height(),
+                      .components = picture.components()};
     if (out.width() != frame.width || out.height() != frame.height || out.components() != frame.components) {
         out = Planes(frame.width, frame.height, frame.components);
     }

@@ -12,19 +12,11 @@
 #include "mediator/picture/metrics.h"
 #include "mediator/picture/same_size.h"
 #include "tests/bench/filters/display.h"
+#include "tests/bench/filters/looks.h"
 
 namespace tessera::tools::bench {
 
 namespace {
-
-double mean_luminance(const frame::Image& image) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < image.pixel_count(); ++i) {
-        const auto p = image.pixel(i);
-        sum += picture::luminance(p[0], p[1], p[2]);
-    }
-    return sum / static_cast<double>(image.pixel_count());
-}
 
 // Per pixel the sums over components of w (F - R1)(F - R2), of the terms of its variance, and of the plain
 // squared error.
@@ -135,8 +127,11 @@ RelativeErrors temporal_relmse(const frame::Image& before, const frame::Image& a
 
 PerceptualErrors perceptual_errors(const frame::Image& picture, const ReferencePair& references) {
     const Display display(references.mean());
-    return {picture::ldr_flip_mean(display.shown(picture), display.shown(references.mean())),
-            picture::ssim(picture, references.mean())};
+    const double light = mean_luminance(references.mean());
+    return {.flip = picture::ldr_flip_mean(display.shown(picture), display.shown(references.mean())),
+            .ssim = picture::ssim(picture, references.mean()),
+            .specks = speck_fraction(picture, references.mean()),
+            .energy = light > 0.0 ? mean_luminance(picture) / light : 1.0};
 }
 
 }  // namespace tessera::tools::bench

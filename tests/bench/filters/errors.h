@@ -62,6 +62,8 @@ RelativeErrors temporal_relmse(const frame::Image& before, const frame::Image& a
 struct PerceptualErrors {
     double flip = 0.0;  // mean LDR-FLIP
     double ssim = 0.0;
+    double specks = 0.0;  // fraction of the pixels
+    double energy = 0.0;  // mean luminance over the reference's
 };
 PerceptualErrors perceptual_errors(const frame::Image& picture, const ReferencePair& references);
 

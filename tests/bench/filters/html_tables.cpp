@@ -194,7 +194,8 @@ std::string size_table(const SizeResult& size) {
                      row.all.to_unfiltered > ConsistencyLimit ? "bad" : "") +
                 cell(ratio(row.all.equal_error)) + cell(ratio(row.all.equal_time)) +
                 cell(formatted("%.4f", row.seen.flip)) + cell(formatted("%.4f", row.seen.ssim)) +
-                cell(formatted("%.2f", row.time.seconds * 1e3)) +
+                cell(formatted("%.2f %%", 100.0 * row.seen.specks)) +
+                cell(formatted("%.3f", row.seen.energy)) + cell(formatted("%.2f", row.time.seconds * 1e3)) +
                 cell(formatted("%.1f", row.sampling_seconds * 1e3)) +
                 cell(formatted("%.0f", row.time.bytes_per_pixel)) +
                 cell(formatted("%.2f", row.time.copy_ratio)) + "</tr>\n";
@@ -202,6 +203,7 @@ std::string size_table(const SizeResult& size) {
     const std::string head =
         "<th rowspan=\"2\">filter</th><th rowspan=\"2\">spp</th><th colspan=\"5\">trimmed relMSE</th>"
         "<th colspan=\"5\">relMSE of all pixels</th><th rowspan=\"2\">FLIP</th><th rowspan=\"2\">SSIM</th>"
+        "<th rowspan=\"2\">specks</th><th rowspan=\"2\">energy</th>"
         "<th rowspan=\"2\">filter ms</th><th rowspan=\"2\">sampling ms</th><th rowspan=\"2\">bytes/px</th>"
         "<th rowspan=\"2\">time over copy</th></tr>\n<tr>" +
         heads({"value", "", "/ unfiltered", "equivalent spp", "equal-time error", "value", "", "/ unfiltered",
@@ -212,7 +214,11 @@ std::string size_table(const SizeResult& size) {
                "Two references of %llu spp, each with a relMSE of %.2g from its own noise (half the mean "
                "square of "
                "their "
-               "difference), which is not part of the errors below.",
+               "difference), which is not part of the errors below. Specks: pixels whose luminance differs "
+               "from "
+               "the median around them by more than 25 %% plus 1 %% of the mean, and does not in the "
+               "references. "
+               "Energy: mean luminance over the references'.",
                static_cast<unsigned long long>(size.reference_spp), size.noise_relmse) +
            "</p>" + table(head, body) + "</details>\n";
 }

@@ -44,6 +44,8 @@ Json row_json(const Row& row) {
                 {"mse", estimate(row.errors.mse)},
                 {"flip_mean", row.seen.flip},
                 {"ssim", row.seen.ssim},
+                {"specks", row.seen.specks},
+                {"energy", row.seen.energy},
                 {"filter_milliseconds", row.time.seconds * 1e3},
                 {"sampling_milliseconds", row.sampling_seconds * 1e3},
                 {"passes", passes_json(row.time)},

@@ -100,6 +100,49 @@ TEST(Reconstructor, ForgottenViewsStartOver) {
     EXPECT_EQ(picture(used, psvgf_view(8, 2), 2), alone);
 }
 
+TEST(Reconstructor, ViewsOfOneSizeShareAFilterThatKeepsNothing) {
+    Reconstructor reconstructor;
+    const auto show = [&](std::uint64_t id, const char* filter) {
+        view::View view = psvgf_view(id, 1);
+        view.filter = filter;
+        complete(view);
+        return picture(reconstructor, view, 1);
+    };
+    EXPECT_EQ(show(8, "fdf"), show(16, "fdf:radius=8"));
+    EXPECT_EQ(reconstructor.filter_count(), 1u);
+    show(8, "gauss");
+    EXPECT_EQ(reconstructor.filter_count(), 2u) << "the other view still uses fdf";
+    reconstructor.forget(ViewId{16}, ViewId{24});
+    EXPECT_EQ(reconstructor.filter_count(), 1u);
+    show(16, "psvgf");
+    show(24, "psvgf");
+    show(32, "pixel:schedule=on");
+    show(40, "pixel:schedule=on");
+    EXPECT_EQ(reconstructor.filter_count(), 5u) << "one for each view";
+    reconstructor.forget(ViewId{1}, ViewId{100});
+    EXPECT_EQ(reconstructor.filter_count(), 0u);
+}
+
+// Schwenk 3.3.3. Pictures of two views alternate, so each needs what it kept.
+TEST(Reconstructor, ThePixelFilterRunsItsPassAt4And8And16SamplesOnly) {
+    Reconstructor reconstructor;
+    for (std::uint32_t n = 1; n <= 20; ++n) {
+        for (const std::uint64_t id : {8u, 16u}) {
+            view::View view = psvgf_view(id, 1);
+            view.filter = "pixel:schedule=on";
+            complete(view);
+            frame::FilmTile film = noise(view, 1);
+            std::fill(film.counts.begin(), film.counts.end(), n);
+            const Reconstruction made = reconstructor.reconstruct(
+                {.film = film}, view, {Scene, {}},
+                {.encoding = session::PictureEncoding::Planes, .transform = {}, .view = {}});
+            const bool has_pass = std::ranges::any_of(made.summary.passes,
+                                                      [](const auto& pass) { return pass.name == "guide"; });
+            EXPECT_EQ(has_pass, n == 4 || n == 8 || n == 16) << n << " samples, view " << id;
+        }
+    }
+}
+
 // Otherwise brightness would fluctuate during edits and between coarse pictures.
 TEST(Reconstructor, AllPicturesOfAViewUseTheFirstExposure) {
     Reconstructor reconstructor;

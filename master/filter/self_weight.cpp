@@ -1,11 +1,11 @@
-#include "master/filter/nfor/self_weight.h"
+#include "master/filter/self_weight.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "master/filter/kernels.h"
 
-namespace tessera::filter::nfor {
+namespace tessera::filter {
 
 namespace {
 
@@ -23,8 +23,8 @@ float self_weight_floor(const Planes& filtered) {
 
 }  // namespace
 
-bool SelfWeight::run(const Inputs& inputs, const std::array<Planes, 2>& colors, const Planes& scale,
-                     std::span<const float> change, const Planes& filtered, RunContext& context) {
+bool SelfWeight::run(const Inputs& inputs, std::span<const float> change, std::span<const float> scale,
+                     std::span<const float> response, const Planes& filtered, RunContext& context) {
     shape(sums_, inputs, 4);
     shape(weights_, inputs, 1);
     const std::size_t width = inputs.width, height = inputs.height;
@@ -33,16 +33,14 @@ bool SelfWeight::run(const Inputs& inputs, const std::array<Planes, 2>& colors, 
                     [&](std::uint32_t y) {
                         float *covariance = sums_.row(0, y), *variance = sums_.row(1, y);
                         for (std::size_t x = 0; x < width; ++x) {
-                            float difference = 0.0f, brightness = floor;
-                            for (std::uint32_t c = 0; c < 3; ++c) {
-                                difference += colors[0].row(c, y)[x] - colors[1].row(c, y)[x];
+                            const std::size_t i = std::size_t{y} * width + x;
+                            float brightness = floor;
+                            for (std::uint32_t c = 0; c < 3; ++c)
                                 brightness += std::abs(filtered.row(c, y)[x]);
-                            }
                             brightness = std::min(brightness, 1e38f);
-                            const float u =
-                                std::clamp(scale.row(0, y)[x] * (difference / brightness), -Most, Most);
-                            const float f =
-                                std::clamp(change[std::size_t{y} * width + x] / brightness, -Most, Most);
+                            const float factor = scale.empty() ? 1.0f : scale[i];
+                            const float u = std::clamp(factor * (change[i] / brightness), -Most, Most);
+                            const float f = std::clamp(response[i] / brightness, -Most, Most);
                             covariance[x] = u * f;
                             variance[x] = u * u;
                         }
@@ -77,4 +75,4 @@ bool SelfWeight::run(const Inputs& inputs, const std::array<Planes, 2>& colors, 
            });
 }
 
-}  // namespace tessera::filter::nfor
+}  // namespace tessera::filter

@@ -1,0 +1,37 @@
+#include "master/render/view_memory.h"
+
+#include <algorithm>
+
+#include "master/filter/catalog.h"
+#include "master/render/view_request.h"
+
+namespace tessera::master {
+
+namespace {
+
+// Without reading its parameters: this is asked for each edit. Null: there is none of this name.
+const filter::Description* denoiser_of(const view::View& view) {
+    const std::string_view name = std::string_view(view.filter).substr(0, view.filter.find(':'));
+    const auto found = std::ranges::find(
+        filter::catalog(), name, [](const filter::FilterEntry& entry) { return entry.description.name; });
+    return found == filter::catalog().end() ? nullptr : &found->description;
+}
+
+}  // namespace
+
+void ViewMemory::add(const session::ViewRequest& request) {
+    bytes_ += film_bytes(request.view);
+    const filter::Description* denoiser = denoiser_of(request.view);
+    if (denoiser == nullptr) return;
+    const Rect& window = request.view.window;
+    double pixels = double(window.pixel_count());
+    const bool is_shared = !denoiser->needs_own_instance();
+    if (!is_shared && request.frames == session::Frames::All) {
+        for (const int scale : {2, 4, 8}) pixels += double(window.pixel_count()) / (scale * scale);
+    } else if (is_shared && !shared_.insert({denoiser->name, window.width, window.height}).second) {
+        return;
+    }
+    bytes_ += static_cast<std::uint64_t>(pixels * denoiser->bytes_per_pixel);
+}
+
+}  // namespace tessera::master

@@ -1,0 +1,60 @@
+#include "master/render/view_memory.h"
+
+#include <gtest/gtest.h>
+
+#include "master/filter/catalog.h"
+#include "master/render/view_request.h"
+
+namespace tessera::master {
+namespace {
+
+session::ViewRequest request(const char* filter, std::int32_t width = 640, std::int32_t height = 400) {
+    session::ViewRequest request;
+    request.view.window = {0, 0, width, height};
+    request.view.channels = {frame::Channel::Radiance};
+    request.view.filter = filter;
+    complete(request.view);
+    return request;
+}
+
+std::uint64_t bytes(std::initializer_list<session::ViewRequest> requests) {
+    ViewMemory views;
+    for (const session::ViewRequest& each : requests) views.add(each);
+    return views.bytes();
+}
+
+double bytes_per_pixel(std::string_view filter) {
+    return std::ranges::find(filter::catalog(), filter,
+                             [](const auto& entry) { return entry.description.name; })
+        ->description.bytes_per_pixel;
+}
+
+constexpr double Pixels = 640 * 400;
+
+TEST(ViewMemory, IsThatOfTheFilmWithoutADenoiser) {
+    EXPECT_EQ(bytes({}), 0u);
+    EXPECT_EQ(bytes({request("")}), film_bytes(request("").view));
+    EXPECT_EQ(bytes({request("none"), request("")}), 2 * film_bytes(request("").view));
+}
+
+TEST(ViewMemory, ViewsOfOneSizeShareADenoiserThatKeepsNothing) {
+    const std::uint64_t film = film_bytes(request("fdf").view);
+    const double denoiser = Pixels * bytes_per_pixel("fdf");
+    EXPECT_GT(denoiser, 0.0);
+    EXPECT_EQ(double(bytes({request("fdf")})), double(film) + denoiser);
+    EXPECT_EQ(double(bytes({request("fdf"), request("fdf:radius=4")})), 2.0 * double(film) + denoiser);
+    EXPECT_EQ(double(bytes({request("fdf"), request("fdf", 400, 640)})), 2.0 * double(film) + 2.0 * denoiser);
+}
+
+TEST(ViewMemory, CoarsePicturesHaveHistoriesOfTheirOwn) {
+    session::ViewRequest live = request("psvgf");
+    const double film = double(film_bytes(live.view)), one = Pixels * bytes_per_pixel("psvgf");
+    const double all = one * (1.0 + 1.0 / 4 + 1.0 / 16 + 1.0 / 64);
+    EXPECT_EQ(double(bytes({live})), film + all);
+    EXPECT_EQ(double(bytes({live, live})), 2.0 * (film + all)) << "each view its own";
+    live.frames = session::Frames::Last;
+    EXPECT_EQ(double(bytes({live})), film + one);
+}
+
+}  // namespace
+}  // namespace tessera::master
