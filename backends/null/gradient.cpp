@@ -1,6 +1,8 @@
 #include "backends/null/gradient.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 
 #include "mediator/base/random.h"
@@ -10,6 +12,10 @@ namespace tessera::null_backend {
 using frame::Channel;
 
 namespace {
+
+float root_of(float radiance) {
+    return 2.0f * (std::sqrt(std::max(radiance, 0.0f)) - 1.0f);
+}
 
 std::uint64_t mixed(std::uint64_t key, std::uint64_t value) {
     return mix(key ^ mix(value + 0x9e3779b97f4a7c15ull));
@@ -88,6 +94,7 @@ void append_values(const Gradient& sample, frame::ChannelSet channels, std::vect
     if (channels.contains(Channel::ShadingFeature)) values.push_back(direct[1] + indirect[1]);
     add(Channel::Irradiance, direct);
     add(Channel::Color, radiance);
+    add(Channel::Root, {root_of(radiance[0]), root_of(radiance[1]), root_of(radiance[2])});
 }
 
 }  // namespace tessera::null_backend

@@ -122,6 +122,7 @@ Expected<void> check(const filter::Choice& choice, const picture::FilmFile& file
                        "filter '" + std::string(filter.name) + "' needs " + channels_text(missing) +
                            ", which the film does not contain" +
                            (is_old ? " (its half_buffer_a has halves that depend on each other)" : "") +
+                           (missing == frame::ChannelSet{Root} ? " (transform=none does without it)" : "") +
                            ": render it with --save-statistics");
     }
     if (filter.path_class != view::PathClass::Indirect && filter.path_class != view.path_class) {

@@ -29,9 +29,9 @@ struct Row {
     std::array<const float*, 3> means, variances;
 };
 
-Row row_of(const Inputs& inputs, std::uint32_t y) {
-    const Planes& mean = inputs.mean(frame::Channel::Radiance);
-    const Planes& variance = inputs.variance(frame::Channel::Radiance);
+Row row_of(const Inputs& inputs, frame::Channel channel, std::uint32_t y) {
+    const Planes& mean = inputs.mean(channel);
+    const Planes& variance = inputs.variance(channel);
     return {inputs.counts.row(0, y),
             {mean.row(0, y), mean.row(1, y), mean.row(2, y)},
             {variance.row(0, y), variance.row(1, y), variance.row(2, y)}};
@@ -64,13 +64,14 @@ float along(const std::array<float, Wide>& columns, std::int64_t at, std::int64_
 
 }  // namespace
 
-bool ModeratedVariance::run(const Inputs& inputs, float k, std::uint32_t radius, RunContext& context) {
+bool ModeratedVariance::run(const Inputs& inputs, float k, std::uint32_t radius, RunContext& context,
+                            frame::Channel channel) {
     shape(variance_, inputs, 3);
     shape(dof_, inputs, 1);
     const std::int64_t width = inputs.width, height = inputs.height;
     const std::int64_t r = std::min<std::int64_t>(radius, MostRadius);
     return for_rows(context, inputs.height, [&](std::uint32_t y) {
-        const Row own = row_of(inputs, y);
+        const Row own = row_of(inputs, channel, y);
         float* dof = dof_.row(0, y);
         for (std::int64_t begin = 0; begin < width; begin += Chunk) {
             const std::int64_t end = std::min(begin + Chunk, width);
@@ -78,7 +79,7 @@ bool ModeratedVariance::run(const Inputs& inputs, float k, std::uint32_t radius,
             const std::int64_t first = std::max<std::int64_t>(begin - r, 0), last = std::min(end + r, width);
             for (std::int64_t row = std::max<std::int64_t>(y - r, 0); row < std::min(y + r + 1, height);
                  ++row) {
-                add_row(columns, row_of(inputs, static_cast<std::uint32_t>(row)), first, last,
+                add_row(columns, row_of(inputs, channel, static_cast<std::uint32_t>(row)), first, last,
                         first - (begin - r));
             }
             std::array<std::array<float, Chunk>, Quantities> square;

@@ -10,6 +10,7 @@
 #include "master/filter/kernels.h"
 #include "master/filter/membership.h"
 #include "master/filter/moderated_variance.h"
+#include "master/filter/noise_correlation.h"
 #include "master/filter/student.h"
 
 namespace tessera::filter {
@@ -26,8 +27,11 @@ enum Parameters : std::size_t {
     Albedo,
     Normal,
     Depth,
+    FeatureNoise,
+    Transform,
     UseConvergenceBlend
 };
+constexpr double RootTransform = 1.0;  // the choice of the transform
 
 constexpr std::uint32_t PoolRadius = 3;
 
@@ -41,9 +45,11 @@ enum Pair : std::uint32_t {
     Count,
     Known,
     Feature,
-    PairPlanes = Feature + 7,
+    Trust = Feature + 7,
+    PairPlanes = Trust + 3,
 };
-constexpr int Features = 7;
+// Albedo, normal and depth: the first of each, and the end.
+constexpr std::array<std::uint32_t, 4> Groups{0, 3, 6, 7};
 // Half width, in squared distance, of the shell of pairs near the limit of membership.
 constexpr float Shell = 0.5f;
 constexpr std::int64_t Chunk = 128;  // pixels of a row at a time: their planes stay in the first cache
@@ -57,17 +63,32 @@ class StatMc final : public Filter {
         const std::uint32_t components = inputs.color_components();
         shape(out.picture, inputs, components);
         squares_.prepare(values[Confidence]);
+        tested_ = Channel::Radiance;
+        if (values[Transform] == RootTransform) {
+            if (inputs.has(Channel::Root)) {
+                tested_ = Channel::Root;
+            } else {
+                report.notes.push_back("without the channel root: means of radiance are compared");
+            }
+        }
         bool done = false;
         {
             PassTimer timer(report, "variance", ModeratedVariance::Bytes);
-            done = moderated_.run(inputs, static_cast<float>(values[Pooled]), PoolRadius, context);
+            done = moderated_.run(inputs, static_cast<float>(values[Pooled]), PoolRadius, context, tested_);
         }
         if (done) {
-            PassTimer timer(report, "pairs", 4.0 * (15 + PairPlanes));
+            PassTimer timer(report, "pairs", 4.0 * (15 + PairPlanes + 8 * 3 * 3));
             shape_pairs(inputs);
             shape(self_, inputs, 1);
             shape(reached_, inputs, 1);
             done = for_rows(context, inputs.height, [&](std::uint32_t y) { prepare_row(inputs, values, y); });
+            const auto noise = static_cast<float>(values[FeatureNoise]);
+            done = done &&
+                   for_rows(context, inputs.height, [&](std::uint32_t y) { put_trust(inputs, noise, y); });
+        }
+        if (done && tested_ != Channel::Radiance) {
+            PassTimer timer(report, "correlation", NoiseCorrelation::Bytes);
+            done = correlation_.run(inputs, Channel::Radiance, tested_, PoolRadius, context);
         }
         if (done) {
             PassTimer timer(report, "average", 4.0 * (PairPlanes + 2 * components));
@@ -118,7 +139,7 @@ class StatMc final : public Filter {
             seen = hole ? -1.0f : dof[x];
         }
         for (std::uint32_t c = 0; c < 3; ++c) {
-            const float* mean = inputs.mean(Channel::Radiance).row(c, y);
+            const float* mean = inputs.mean(tested_).row(c, y);
             const float* variance = moderated_.variance().row(c, y);
             std::copy(mean, mean + width, pair_row(Mean + c, y));
             for (std::uint32_t x = 0; x < width; ++x) {
@@ -150,6 +171,57 @@ class StatMc final : public Filter {
         const float* depth = inputs.mean(Channel::Depth).row(0, y);
         for (std::uint32_t x = 0; x < inputs.width; ++x) {
             to[x] = scale * (std::isfinite(depth[x]) ? std::log(std::max(depth[x], 1e-30f)) : Miss);
+        }
+    }
+
+    // By what squared differences of the features of a pixel are multiplied, per group. A pixel at an edge sees its
+    // surfaces in random proportions, so that the features of few samples match no neighbour: it would remain unfiltered,
+    // a speck. The variance of the mean of such a feature is about that of 3 x 3 pixels over n; it is added to the
+    // square of the deviation.
+    void put_trust(const Inputs& inputs, float noise, std::uint32_t y) {
+        const std::int64_t width = inputs.width;
+        const float* counts = pair_row(Count, y);
+        for (std::int64_t begin = 0; begin < width; begin += Chunk) {
+            const std::int64_t end = std::min(begin + Chunk, width);
+            for (std::size_t group = 0; group + 1 < Groups.size(); ++group) {
+                std::array<float, Chunk> variance{};
+                for (std::uint32_t f = Groups[group]; f < Groups[group + 1]; ++f) {
+                    add_spatial_variance(f, begin, end, y, inputs, variance);
+                }
+                float* trust = pair_row(Trust + static_cast<std::uint32_t>(group), y);
+                for (std::int64_t x = begin; x < end; ++x) {
+                    const float of_mean =
+                        noise * variance[static_cast<std::size_t>(x - begin)] / std::max(counts[x], 1.0f);
+                    trust[x] = 1.0f / (1.0f + 2.0f * of_mean);
+                }
+            }
+        }
+    }
+
+    // Of 3 x 3 pixels without holes, by differences to the middle: exact where they are equal.
+    void add_spatial_variance(std::uint32_t feature, std::int64_t begin, std::int64_t end, std::uint32_t y,
+                              const Inputs& inputs, std::array<float, Chunk>& variance) {
+        const std::int64_t width = inputs.width, height = inputs.height;
+        std::array<float, Chunk> count{}, sum{}, squares{};
+        const float* own = pair_row(Feature + feature, y);
+        for (std::int64_t row = std::max<std::int64_t>(y, 1) - 1; row < std::min<std::int64_t>(y + 2, height);
+             ++row) {
+            const float* other = pair_row(Feature + feature, static_cast<std::uint32_t>(row));
+            const float* known = pair_row(Known, static_cast<std::uint32_t>(row));
+            for (std::int64_t dx = -1; dx <= 1; ++dx) {
+                const std::int64_t first = std::max(begin, -dx), last = std::min(end, width - dx);
+                for (std::int64_t x = first; x < last; ++x) {
+                    const auto at = static_cast<std::size_t>(x - begin);
+                    const float difference = known[x + dx] * (other[x + dx] - own[x]);
+                    count[at] += known[x + dx];
+                    sum[at] += difference;
+                    squares[at] += difference * difference;
+                }
+            }
+        }
+        for (std::size_t at = 0; at < static_cast<std::size_t>(end - begin); ++at) {
+            const float n = std::max(count[at], 1.0f), mean = sum[at] / n;
+            variance[at] += std::max(squares[at] / n - mean * mean, 0.0f);
         }
     }
 
@@ -188,10 +260,12 @@ class StatMc final : public Filter {
             // How much the average F depends on the pixel's own mean m, dF/dm: through its weight, and
             // through the choice of members by m. A pair that enters or leaves at the limit d = r moves F by
             // its weight times r; with the density of d taken from the shell, dF/dm = (own + shell / Shell) /
-            // sum.
+            // sum. The second term holds if m decides; if its root does, it is multiplied by their correlation twice: that
+            // of the root with m, and of the difference of two pixels at the limit with that of their roots.
             for (std::int64_t x = begin; x < end; ++x) {
                 const auto at = static_cast<std::size_t>(x - begin);
-                const float own = pair_row(Count, y)[x] + sums[1][at] / Shell;
+                const float share = tested_ == Channel::Radiance ? 1.0f : correlation_.squared().row(0, y)[x];
+                const float own = pair_row(Count, y)[x] + share * sums[1][at] / Shell;
                 self_.row(0, y)[x] = sums[0][at] > 0.0f ? std::min(own / sums[0][at], 1.0f) : 0.0f;
                 reached_.row(0, y)[x] = sums[0][at] > 0.0f ? 1.0f : 0.0f;
             }
@@ -217,11 +291,16 @@ class StatMc final : public Filter {
             const auto of_q = [&](std::uint32_t which) {
                 return q[which * plane + static_cast<std::size_t>(i)];
             };
-            float distance = 0.0f;
-            for (std::uint32_t f = 0; f < Features; ++f) {
+            const auto square = [&](std::uint32_t f) {
                 const float d = of_p(Feature + f) - of_q(Feature + f);
-                distance += d * d;
-            }
+                return d * d;
+            };
+            const auto trust = [&](std::uint32_t group) {
+                const float a = of_p(Trust + group), b = of_q(Trust + group);
+                return a < b ? a : b;
+            };
+            const float distance = trust(0) * (square(0) + square(1) + square(2)) +
+                                   trust(1) * (square(3) + square(4) + square(5)) + trust(2) * square(6);
             const Quantile quantile_p{of_p(Square), of_p(Credit)}, quantile_q{of_q(Square), of_q(Credit)};
             bool member = true, inner = true, outer = true;
             for (std::uint32_t c = 0; c < 3; ++c) {
@@ -239,7 +318,9 @@ class StatMc final : public Filter {
         }
     }
 
+    Channel tested_ = Channel::Radiance;
     ModeratedVariance moderated_;
+    NoiseCorrelation correlation_;
     StudentSquares squares_;
     ConvergenceBlend convergence_blend_;
     std::vector<float> pairs_;  // by row, then by Pair
@@ -255,43 +336,59 @@ FilterEntry statmc_entry() {
         {.name = "statmc",
          .summary = "averages pixels with statistically indistinguishable means (confidence intervals)",
          .source = "Sakai et al. 2024",
-         .bytes_per_pixel = 208,
-         .parameters = {{"radius", "px", "radius of the window", 10, 1, 40, {}},
-                        {"sigma", "px", "standard deviation of the spatial weight", 5, 0.1, 100, {}},
-                        {"confidence",
-                         "",
-                         "of the interval of the difference of two means, per channel",
-                         0.995,
-                         0.5,
-                         0.99999,
-                         {}},
-                        {"pooled",
-                         "",
-                         "degrees of freedom that the neighbourhood adds to a pixel's variance",
-                         4,
-                         0,
-                         64,
-                         {}},
-                        {"albedo", "", "standard deviation of the weight of albedo", 0.02, 1e-3, 10, {}},
-                        {"normal", "", "standard deviation of the weight of normals", 0.1, 1e-3, 10, {}},
-                        {"depth",
-                         "",
-                         "standard deviation of the weight of depth, relative to depth",
-                         0.1,
-                         1e-3,
-                         10,
-                         {}},
-                        {"blend",
-                         "",
-                         "blend back to the samples where filtering would increase the error",
-                         1,
-                         0,
-                         1,
-                         {"off", "on"}}},
+         .bytes_per_pixel = 300,
+         .parameters =
+             {{"radius", "px", "radius of the square window (20 in the paper)", 10, 1, 40, {}},
+              {"sigma", "px", "standard deviation of the spatial weight (10 in the paper)", 5, 0.1, 100, {}},
+              {"confidence",
+               "",
+               "of the interval of the difference of two means, per channel",
+               0.995,
+               0.5,
+               0.99999,
+               {}},
+              {"pooled",
+               "",
+               "degrees of freedom that the neighbourhood adds to a pixel's variance",
+               4,
+               0,
+               64,
+               {}},
+              {"albedo", "", "standard deviation of the weight of albedo", 0.02, 1e-3, 10, {}},
+              {"normal", "", "standard deviation of the weight of normals", 0.1, 1e-3, 10, {}},
+              {"depth",
+               "",
+               "standard deviation of the weight of depth, relative to depth; not in the paper",
+               0.1,
+               1e-3,
+               10,
+               {}},
+              {"feature_noise",
+               "",
+               "variance of features that is expected: times that of 3x3 pixels over the samples",
+               2,
+               0,
+               100,
+               {}},
+              {"transform",
+               "",
+               "what the intervals compare: means of radiance, or of its root (Box-Cox transform)",
+               RootTransform,
+               0,
+               1,
+               {"none", "root"}},
+              {"blend",
+               "",
+               "blend back to the samples where filtering would increase the error",
+               1,
+               0,
+               1,
+               {"off", "on"}}},
          .channels =
-             [](const Values&) {
-                 return frame::ChannelSet{Channel::Radiance, Channel::Albedo, Channel::Normal,
-                                          Channel::Depth};
+             [](const Values& values) {
+                 frame::ChannelSet read{Channel::Radiance, Channel::Albedo, Channel::Normal, Channel::Depth};
+                 if (values[Transform] == RootTransform) read.insert(Channel::Root);
+                 return read;
              },
          .consistent = true,
          .reads_variances = true},

@@ -52,6 +52,7 @@ enum class Channel : std::uint8_t {
     Color = 12,
     BlockVariance = 13,
     FirstHalf = 14,
+    Root = 15,
 };
 
 struct ChannelInfo {
@@ -103,6 +104,8 @@ inline constexpr auto ChannelTable = std::to_array<ChannelInfo>({
      "halves"},
     {Channel::FirstHalf, "first_half", MergeRule::FirstHalf, 4,
      "mean radiance of the first half of the samples, and their count"},
+    {Channel::Root, "root", MergeRule::Moments, 3,
+     "2 (sqrt(max(L, 0)) - 1) of each component L of a sample's radiance (Box-Cox transform; Sakai 2024)"},
 });
 inline constexpr std::size_t ChannelCount = ChannelTable.size();
 

@@ -20,6 +20,10 @@ namespace {
 using frame::FilmTile;
 using frame::SampleBlock;
 
+double root_of(double radiance) {
+    return 2.0 * (std::sqrt(std::max(radiance, 0.0)) - 1.0);
+}
+
 struct BackendContract : testing::TestWithParam<std::string> {
     BackendContract() : backend(fresh()) {
         test::commit(*backend, {builder.edit(test::contract_scene(*blobs))});
@@ -151,6 +155,8 @@ TEST_P(BackendContract, TheChannelsOfASampleAreConsistent) {
             ASSERT_EQ(radiance,
                       value(Channel::LowVariance, c, pixel) + value(Channel::HighVariance, c, pixel));
             ASSERT_EQ(value(Channel::Color, c, pixel), radiance);
+            const double root = root_of(radiance);
+            ASSERT_NEAR(value(Channel::Root, c, pixel), root, 1e-6 * (2.0 + std::abs(root)));
             ASSERT_GE(value(Channel::Headlight, c, pixel), 0.0f);
             ASSERT_LE(value(Channel::Headlight, c, pixel), 1.0f);
             if (!hit) {
@@ -165,6 +171,30 @@ TEST_P(BackendContract, TheChannelsOfASampleAreConsistent) {
         const auto half = four.plane(view.channels.first_plane(Channel::FirstHalf) + c);
         ASSERT_TRUE(std::ranges::equal(half, two.plane(view.channels.first_plane(Channel::Radiance) + c)));
     }
+}
+
+TEST_P(BackendContract, RootHasTheMomentsOfTheTransformedSamples) {
+    using frame::Channel;
+    constexpr std::uint64_t Count = 8;
+    const FilmTile film = render(*backend, whole, {0, 3});
+    std::vector<FilmTile> samples;
+    for (std::uint64_t i = 0; i < Count; ++i) samples.push_back(render(*backend, whole, {i, 0}));
+    const std::uint32_t root = view.channels.first_plane(Channel::Root);
+    double variances = 0.0;
+    for (std::uint32_t c = 0; c < 3; ++c) {
+        for (std::size_t pixel = 0; pixel < whole.pixel_count(); ++pixel) {
+            double mean = 0.0, m2 = 0.0;
+            const auto transformed = [&](const FilmTile& one) {
+                return root_of(one.plane(view.channels.first_plane(Channel::Radiance) + c)[pixel]);
+            };
+            for (const FilmTile& one : samples) mean += transformed(one) / Count;
+            for (const FilmTile& one : samples) m2 += std::pow(transformed(one) - mean, 2);
+            ASSERT_NEAR(film.plane(root + c)[pixel], mean, 1e-6 * (2.0 + std::abs(mean)));
+            ASSERT_NEAR(film.plane(root + 3 + c)[pixel], m2, 1e-4 * (0.01 + m2));
+            variances += m2;
+        }
+    }
+    EXPECT_GT(variances, 0.0);
 }
 
 // Every view option renders whole blocks; options of light transport do not affect the geometry channels.

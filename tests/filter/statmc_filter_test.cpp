@@ -6,6 +6,7 @@
 
 #include "master/filter/catalog.h"
 #include "master/filter/moderated_variance.h"
+#include "master/filter/noise_correlation.h"
 #include "master/filter/student.h"
 #include "mediator/base/random.h"
 #include "mediator/filter/choice.h"
@@ -95,6 +96,42 @@ TEST(StatMc, DifferentMeansSeparateWithEnoughSamples) {
     EXPECT_LT(joined(256, 1.0, 1.0, "confidence=0.995").rate, 0.001);
 }
 
+// How often two pixels of 64 log-normal samples, one 4.5 times as bright, are joined.
+double joined_although_skewed(const std::string& transform) {
+    constexpr int Trials = 400;
+    int count = 0;
+    for (int trial = 0; trial < Trials; ++trial) {
+        CounterRandom random(static_cast<std::uint64_t>(trial), 11);
+        const Inputs inputs = synthetic_inputs(
+            2, 1, 64,
+            [&](auto x, auto, auto) { return grey(std::exp(1.5 * normal(random) - (x == 0 ? 0.0 : 1.5))); },
+            {frame::Channel::Radiance, frame::Channel::Root});
+        const Output out =
+            run_filter("statmc:blend=off,radius=1,sigma=100,pooled=0,transform=" + transform, inputs);
+        count += std::abs(out.picture.plane(0)[0] - inputs.color(0)[0]) > 1e-4f ? 1 : 0;
+    }
+    return static_cast<double>(count) / Trials;
+}
+
+TEST(StatMc, RootsOfSkewedSamplesSeparate) {
+    EXPECT_GT(joined_although_skewed("none"), 0.35);
+    EXPECT_LT(joined_although_skewed("root"), 0.1);
+}
+
+TEST(StatMc, ReadsRootIfItComparesRoots) {
+    const auto channels = [](const char* text) { return parse_choice(text, catalog()).value().channels(); };
+    EXPECT_TRUE(channels("statmc").contains(frame::Channel::Root));
+    EXPECT_FALSE(channels("statmc:transform=none").contains(frame::Channel::Root));
+    const auto sampler = [](auto x, auto, auto i) { return grey(1.0 + 0.1 * double((x + i) % 3)); };
+    const Inputs without = synthetic_inputs(12, 12, 4, sampler, Color);
+    const Choice choice = parse_choice("statmc", catalog()).value();
+    tbb::task_arena arena(1);
+    Output out;
+    EXPECT_EQ(choice.entry->make(12, 12)->run(without, choice.values, out, {arena, {}}).notes.size(), 1u);
+    const Output none = run_filter("statmc:transform=none", without);
+    EXPECT_TRUE(std::ranges::equal(out.picture.values(), none.picture.values()));
+}
+
 TEST(StatMc, MembershipIsSymmetric) {
     EXPECT_TRUE(joined(6, 1.5, 3.0, "confidence=0.8,pooled=0").always_both);
     EXPECT_TRUE(joined(6, 1.5, 3.0, "confidence=0.8").always_both);
@@ -177,6 +214,57 @@ TEST(StatMc, KeepsFeatureEdgesAtFewSamples) {
     }
     EXPECT_NEAR(left, 0.8, 0.1);
     EXPECT_NEAR(right, 1.2, 0.1);
+}
+
+// Between two surfaces of the same light, a column of pixels sees both.
+double error_at_outline(std::uint64_t n, const std::string& options) {
+    const Inputs inputs = synthetic_inputs(41, 64, n, [](auto x, auto y, auto i) {
+        CounterRandom random(mix(12), mix((std::uint64_t{y} << 32 | x) ^ mix(i)));
+        const bool first = x == 20 ? random.uniform() < 0.5 : x < 20;
+        SyntheticSample s = grey(2.0 * random.uniform());
+        s.albedo = first ? std::array{0.8f, 0.8f, 0.8f} : std::array{0.2f, 0.2f, 0.2f};
+        s.normal = first ? std::array{0.0f, 0.0f, 1.0f} : std::array{1.0f, 0.0f, 0.0f};
+        return s;
+    });
+    const Output out = run_filter("statmc:blend=off," + options, inputs);
+    double sum = 0.0;
+    for (std::uint32_t y = 0; y < 64; ++y) sum += std::pow(out.picture.row(0, y)[20] - 1.0, 2) / 64.0;
+    return sum;
+}
+
+TEST(StatMc, NoisyFeaturesDoNotLeaveSpecks) {
+    for (const std::uint64_t n : {4, 16}) {
+        EXPECT_LT(error_at_outline(n, "feature_noise=2"), 0.5 * error_at_outline(n, "feature_noise=0")) << n;
+    }
+}
+
+TEST(NoiseCorrelation, IsThatOfTheSamples) {
+    // Radiance is twice the low part, or independent of it.
+    for (const bool same : {true, false}) {
+        Inputs inputs =
+            synthetic_inputs(40, 30, 4,
+                             [&](auto x, auto y, auto i) {
+                                 CounterRandom random(mix(13), mix((std::uint64_t{y} << 32 | x) ^ mix(i)));
+                                 SyntheticSample s;
+                                 const auto low = static_cast<float>(random.uniform()),
+                                            other = static_cast<float>(random.uniform());
+                                 s.low.fill(x == 11 ? std::nanf("") : low);
+                                 s.high.fill(same ? low : other - low);
+                                 return s;
+                             },
+                             {frame::Channel::Radiance, frame::Channel::LowVariance});
+        NoiseCorrelation correlation;
+        tbb::task_arena arena(1);
+        RunContext context{arena, {}};
+        ASSERT_TRUE(
+            correlation.run(inputs, frame::Channel::Radiance, frame::Channel::LowVariance, 3, context));
+        const auto [least, most] = std::ranges::minmax(correlation.squared().plane(0));
+        EXPECT_GE(least, same ? 0.999f : 0.0f);
+        EXPECT_LE(most, same ? 1.0f : 0.6f);
+        double mean = 0.0;
+        for (const float value : correlation.squared().plane(0)) mean += value / (40.0 * 30.0);
+        EXPECT_NEAR(mean, same ? 1.0 : 0.04, 0.04);
+    }
 }
 
 TEST(StatMc, ManySamplesWeighMoreThanFew) {

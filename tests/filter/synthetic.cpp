@@ -1,5 +1,6 @@
 #include "tests/filter/synthetic.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -14,6 +15,10 @@ namespace tessera::filter {
 namespace {
 
 using frame::Channel;
+
+float root_of(float radiance) {
+    return 2.0f * (std::sqrt(std::max(radiance, 0.0f)) - 1.0f);
+}
 
 void append(std::vector<float>& values, const SyntheticSample& s, frame::ChannelSet channels) {
     const auto add = [&](Channel channel, const auto& numbers) {
@@ -32,6 +37,7 @@ void append(std::vector<float>& values, const SyntheticSample& s, frame::Channel
     add(Channel::ShadingFeature, std::array{s.shading});
     add(Channel::Irradiance, s.irradiance);
     add(Channel::Color, radiance);
+    add(Channel::Root, std::array{root_of(radiance[0]), root_of(radiance[1]), root_of(radiance[2])});
 }
 
 struct TextureAndLight {

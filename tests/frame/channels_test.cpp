@@ -61,6 +61,14 @@ TEST(Channels, DerivedOnesNeedRadiance) {
     EXPECT_NE((ChannelSet{FirstHalf}).not_renderable(), nullptr);
 }
 
+TEST(Channels, RootIsMergedAsMoments) {
+    const ChannelInfo& root = info(channel_by_name("root").value());
+    EXPECT_EQ(static_cast<unsigned>(root.channel), 15u);
+    EXPECT_EQ(root.rule, MergeRule::Moments);
+    EXPECT_EQ(root.plane_count(), 6u);
+    EXPECT_EQ(ChannelSet{Channel::Root}.not_renderable(), nullptr);
+}
+
 TEST(Channels, HalfBuffersOfOldFilmsAreReadButNotRendered) {
     const ChannelSet old{Channel::Radiance, Channel::HalfBufferA};
     EXPECT_EQ(old.malformed(), nullptr);

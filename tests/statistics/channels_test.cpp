@@ -279,6 +279,28 @@ TEST(Channels, AreIndependentOfEachOther) {
     }
 }
 
+// Box-Cox transform of the exponent 1/2, of each sample.
+TEST(Channels, RootIsTheTransformOfEachSample) {
+    Corner corner(glass(1.5f));
+    SceneAdapter& world = corner.build();
+    const auto radiance = planes_of(world, Corner::eye(), Channel::Radiance);
+    const auto root = planes_of(world, Corner::eye(), Channel::Root);
+    std::size_t bright = 0;
+    for (std::size_t i = 0; i < root.size(); ++i) {
+        ASSERT_EQ(root[i].size(), 3u);
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double expected = 2.0 * (std::sqrt(std::max(double(radiance[i][c]), 0.0)) - 1.0);
+            ASSERT_NEAR(root[i][c], expected, 1e-6 * (2.0 + std::abs(expected)));
+            bright += radiance[i][c] > 1.0f ? 1 : 0;
+        }
+    }
+    EXPECT_GT(bright, 0u);
+    EXPECT_EQ(shading::root_of(0.0f), -2.0f);
+    EXPECT_EQ(shading::root_of(-1.0f), -2.0f);
+    EXPECT_EQ(shading::root_of(0.25f), -1.0f);
+    EXPECT_TRUE(std::isinf(shading::root_of(shading::infinity())));
+}
+
 std::uint64_t rays_of(const SceneAdapter& world, const View& view) {
     const PathTracer tracer(world.tables(), world.scene(), view);
     std::uint64_t rays = 0;

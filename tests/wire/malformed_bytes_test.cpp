@@ -146,7 +146,7 @@ TEST(MalformedBytes, UnknownRenderersAreRefused) {
 
 // Also those that a later version may have: beyond 31 in a film's header, beyond 63 in a message.
 TEST(MalformedBytes, UnknownChannelsAreRefused) {
-    for (const unsigned number : {15u, 30u, 31u, 63u, 64u, 127u}) {
+    for (const unsigned number : {unsigned{frame::ChannelCount}, 30u, 31u, 63u, 64u, 127u}) {
         OpenView open{some_view()};
         EXPECT_TRUE(decode_control(encode(ControlMessage(open))));
         open.view.channels.insert(static_cast<frame::Channel>(number));

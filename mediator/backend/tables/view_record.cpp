@@ -39,7 +39,8 @@ static_assert(is_number_of(shading::ChannelRadiance, Channel::Radiance) &&
               is_number_of(shading::ChannelHeadlight, Channel::Headlight) &&
               is_number_of(shading::ChannelShadingFeature, Channel::ShadingFeature) &&
               is_number_of(shading::ChannelIrradiance, Channel::Irradiance) &&
-              is_number_of(shading::ChannelColor, Channel::Color) && frame::ChannelCount == 15);
+              is_number_of(shading::ChannelColor, Channel::Color) &&
+              is_number_of(shading::ChannelRoot, Channel::Root) && frame::ChannelCount == 16);
 
 std::uint32_t recorded_quantities(const view::View& view) {
     const bool feature = view.channels.contains(Channel::ShadingFeature);
