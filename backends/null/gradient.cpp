@@ -56,7 +56,11 @@ std::uint64_t view_key(std::uint64_t content, const view::View& view) {
 
 Gradient gradient(const view::View& view, const backend::FlatScene& flat_scene, std::uint64_t key,
                   std::int32_t x, std::int32_t y, std::uint64_t sample) {
-    const Colors light = colors(view, key, x, y, sample);
+    Colors light = colors(view, key, x, y, sample);
+    const float most = *std::max_element(light.indirect.begin(), light.indirect.end());
+    if (view.clamp_indirect > 0.0f && most > view.clamp_indirect) {
+        for (float& component : light.indirect) component *= view.clamp_indirect / most;
+    }
     const float u = static_cast<float>(x) / static_cast<float>(view.width);
     const float v = static_cast<float>(y) / static_cast<float>(view.height);
     const auto& instances = flat_scene.instances;

@@ -98,6 +98,8 @@ std::string as_json(const RenderReport& report) {
         {"instances", result.instances},
         {"lights", result.lights},
         {"nonfinite_samples", result.nonfinite_samples},
+        {"clamp",
+         report.request.view.clamp_indirect > 0.0f ? Json(report.request.view.clamp_indirect) : Json()},
         {"peak_memory_bytes", peak_memory_bytes()},
         {"film_hash", report.film_hash},
         {"nodes", nodes_value(result)},
@@ -157,6 +159,10 @@ std::string as_text(const RenderReport& report, const std::vector<std::string>& 
         line("view transform %s", picture::describe(transform, report.custom_view).c_str());
     std::set<std::string> kinds;
     for (const session::NodeSummary& node : result.nodes) kinds.insert(node.kind);
+    if (report.request.view.clamp_indirect > 0.0f) {
+        line("biased: --clamp %g cuts indirect light, so that the picture is too dark",
+             double(report.request.view.clamp_indirect));
+    }
     line("%zu node%s took part", result.nodes.size(), result.nodes.size() == 1 ? "" : "s");
     for (const std::string& kind : kinds) line("  %s", kind.c_str());
     if (result.nonfinite_samples != 0) {

@@ -8,6 +8,8 @@
 #include <sstream>
 #include <vector>
 
+#include "client/edit/values.h"
+
 namespace tessera::tools {
 
 namespace {
@@ -16,6 +18,7 @@ constexpr const char* Camera = "tessera.camera.pose";
 constexpr const char* Optics = "tessera.camera.optics";  // only if not a pinhole: projection and lens
 // Where it moves while the shutter is open: 16 numbers for each motion key after the pose.
 constexpr const char* Motion = "tessera.camera.motion";
+constexpr const char* Biased = "tessera.biased";  // only if samples are clamped: by what
 constexpr const char* PathClassName = "tessera.pathClass";
 constexpr std::size_t MaxKeys = 256;  // limit when reading
 
@@ -77,6 +80,7 @@ std::map<std::string, std::string> view_attributes(const view::View& view) {
     if (!view.camera.motion.empty()) {
         for (const glm::dmat4& key : view.camera.motion) put(attributes[Motion], key);
     }
+    if (view.clamp_indirect > 0.0f) attributes[Biased] = "--clamp " + edit::number_text(view.clamp_indirect);
     return attributes;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "client/edit/values.h"
 #include "client/tools/view_attributes.h"
 #include "mediator/base/nearest.h"
 
@@ -135,6 +136,11 @@ void ViewOptions::add_to(cli::CommandLine& command) {
     command.option("--specular-bounces",
                    "maximum number of reflections and refractions of a path by mirrors and smooth glass",
                    specular_bounces);
+    command.option("--clamp",
+                   "most that a path adds to a sample after its second bounce, per component: fewer bright "
+                   "specks, but the picture "
+                   "is too dark (biased) wherever light exceeds the limit (default: no limit)",
+                   clamp);
     command.choice("--pixel-filter", "pixel reconstruction filter", pixel_filter,
                    {"box", "gaussian", "blackman-harris"});
     command.choice("--renderer",
@@ -186,6 +192,12 @@ Expected<ViewPlan> parse_options(const ViewOptions& options) {
     plan.view.seed = options.seed;
     plan.view.max_bounces = options.bounces;
     plan.view.max_specular_bounces = options.specular_bounces;
+    if (options.clamp) {
+        const auto most = static_cast<float>(*options.clamp);
+        if (!(most > 0.0f) || !std::isfinite(most))
+            return wrong("--clamp", "'" + edit::number_text(*options.clamp) + "' is not a number above 0");
+        plan.view.clamp_indirect = most;
+    }
     for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted,
                                           view::Renderer::Raster, view::Renderer::Coverage}) {
         if (options.renderer == view::renderer_name(renderer)) plan.view.renderer = renderer;

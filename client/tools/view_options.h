@@ -25,6 +25,7 @@ struct ViewOptions {
     bool solid_glass = false, soft_lights_as_sky = false;
     std::string light_units = "physical";
     std::uint32_t bounces = 8, specular_bounces = 32;
+    std::optional<double> clamp;
     std::string pixel_filter = "box";
     std::uint64_t seed = 0;
     std::string renderer = "path", path_class = "indirect", feature_rule = "demodulated";

@@ -172,7 +172,7 @@ class SegmentReader {
     bool matches(const Record& record, std::uint64_t content, std::uint32_t length,
                  const std::vector<std::byte>& chain) const {
         if (length == 0 || byte_size_ - content < length) return false;
-        constexpr std::uint64_t PieceBytes = std::uint64_t{1} << 18;
+        constexpr std::uint64_t MostRead = std::uint64_t{1} << 18;
         Blake2b hash;
         hash.update(chain);
         std::vector<std::byte> piece;

@@ -217,7 +217,7 @@ static_assert(offsetof(Scene, environment_light) == 252);
 static_assert(offsetof(Scene, features) == 256);
 static_assert(offsetof(Scene, tree_scale) == 260);
 
-static_assert(sizeof(View) == 168);
+static_assert(sizeof(View) == 176);
 static_assert(offsetof(View, seed) == 0);
 static_assert(offsetof(View, eye) == 8);
 static_assert(offsetof(View, right) == 20);
@@ -245,5 +245,7 @@ static_assert(offsetof(View, camera_keys) == 136);
 static_assert(offsetof(View, camera_key_intervals) == 144);
 static_assert(offsetof(View, containing_media) == 148);
 static_assert(offsetof(View, max_specular_events) == 164);
+static_assert(offsetof(View, clamp_indirect) == 168);
+static_assert(offsetof(View, unused) == 172);
 
 }  // namespace tessera::shading

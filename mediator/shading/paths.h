@@ -124,8 +124,17 @@ inline bool records(IN(View) view, uint quantity) {
     return (view.recorded_quantities & quantity) != 0u;
 }
 
+// The light that a path adds at one vertex, scaled so that no component exceeds the view's limit, if it is
+// indirect. The mean of the samples is then too dark wherever paths exceed the limit.
+inline vec3 clamped(IN(View) view, vec3 light, IN(PathClassInfo) class_info) {
+    if (view.clamp_indirect <= 0.0f || class_info.scatter_count < 2u) return light;
+    const float most = greater_of(greater_of(abs(light.x), abs(light.y)), abs(light.z));
+    return most > view.clamp_indirect ? light * (view.clamp_indirect / most) : light;
+}
+
 // Adds light to the sample's path classes, as the view requests.
-inline void add_light(INOUT(PathSample) found, IN(View) view, vec3 light, IN(PathClassInfo) class_info) {
+inline void add_light(INOUT(PathSample) found, IN(View) view, vec3 unclamped, IN(PathClassInfo) class_info) {
+    const vec3 light = clamped(view, unclamped, class_info);
     const vec3 diffuse = records(view, RecordsDiffuse) ? light * class_info.diffuse_fraction : vec3(0.0f);
     found.diffuse += diffuse;
     if (view.path_class == ClassDiffuse) {

@@ -377,6 +377,8 @@ struct View {
     uint camera_key_intervals;
     uvec4 containing_media;    // instances of the media that the eye is in (containing_media.h)
     uint max_specular_events;  // perfect reflections and refractions of a path
+    float clamp_indirect;      // most of a component that indirect light adds at once; 0 = no limit
+    uint unused;               // keeps the size a multiple of an address's
 };
 
 RECORDS_END

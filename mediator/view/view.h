@@ -141,6 +141,8 @@ struct View {
     std::uint64_t seed = 0;
     std::uint32_t max_bounces = 8;            // diffuse and glossy ones, and in media; 0 = direct light only
     std::uint32_t max_specular_bounces = 32;  // perfect reflections and refractions
+    float clamp_indirect =
+        0.0f;  // most of a component that a path adds after its second bounce; 0 = no limit
     PixelFilter pixel_filter;
     Renderer renderer = Renderer::PathTracing;
     PathClass path_class = PathClass::Indirect;
@@ -187,9 +189,14 @@ struct View {
             row(23, "aperture", camera(&CameraPose::aperture)),
             row(24, "camera_motion", camera(&CameraPose::motion), Limit{scene::MaxDecodedMotion}),
             row(25, "later_channels", channels(1)),
-            row(26, "max_specular_bounces", &View::max_specular_bounces, InitialWhenAbsent{}));
+            row(26, "max_specular_bounces", &View::max_specular_bounces, InitialWhenAbsent{}),
+            row(27, "clamp_indirect", &View::clamp_indirect));
     }
-    const char* malformed() const { return channels.not_renderable(); }
+    const char* malformed() const {
+        // Also of NaN.
+        if (!(clamp_indirect >= 0.0f)) return "clamp_indirect is not a number from 0 on";
+        return channels.not_renderable();
+    }
 };
 
 }  // namespace tessera::view

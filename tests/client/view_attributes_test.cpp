@@ -41,6 +41,13 @@ TEST(ViewAttributes, OmitDefaults) {
     EXPECT_TRUE(read->camera.is_pinhole());
 }
 
+TEST(ViewAttributes, LabelClampedPicturesAsBiased) {
+    view::View view;
+    EXPECT_FALSE(view_attributes(view).contains("tessera.biased"));
+    view.clamp_indirect = 2.5f;
+    EXPECT_EQ(view_attributes(view).at("tessera.biased"), "--clamp 2.5");
+}
+
 TEST(ViewAttributes, ErrorsNameTheDamagedAttribute) {
     const auto good = view_attributes(moving_view());
     for (const char* name : {"tessera.camera.pose", "tessera.camera.optics", "tessera.camera.motion"}) {

@@ -39,6 +39,7 @@ TEST(ViewOptions, AreConvertedToAView) {
                         .size = "64x32",
                         .bounces = 3,
                         .specular_bounces = 5,
+                        .clamp = 2.5,
                         .pixel_filter = "gaussian",
                         .seed = 9};
     options.crop = "8,4,16,8";
@@ -49,6 +50,7 @@ TEST(ViewOptions, AreConvertedToAView) {
     EXPECT_EQ(plan->view.window, (Rect{8, 4, 16, 8}));
     EXPECT_EQ(plan->view.max_bounces, 3u);
     EXPECT_EQ(plan->view.max_specular_bounces, 5u);
+    EXPECT_EQ(plan->view.clamp_indirect, 2.5f);
     EXPECT_EQ(plan->view.seed, 9u);
     EXPECT_EQ(plan->view.pixel_filter.kind, view::PixelFilterKind::Gaussian);
     EXPECT_EQ(plan->import.background, glm::vec3(0.25f, 0.5f, 1.0f));
@@ -62,6 +64,10 @@ TEST(ViewOptions, ErrorsNameTheOption) {
     EXPECT_NE(std::string(parse_options(options).error().what()).find("--env-strength"), std::string::npos);
     options = {.scene = "a.glb", .environment_rotation = INFINITY};
     EXPECT_NE(std::string(parse_options(options).error().what()).find("--env-rotation"), std::string::npos);
+    for (const double clamp : {0.0, -1.0, 1e-60, 1e60, double(INFINITY), double(NAN)}) {
+        options = {.scene = "a.glb", .clamp = clamp};
+        EXPECT_NE(std::string(parse_options(options).error().what()).find("--clamp"), std::string::npos);
+    }
     options = {.scene = "a.glb", .size = "12"};
     EXPECT_NE(std::string(parse_options(options).error().what()).find("--size"), std::string::npos);
     options = {.scene = "a.glb"};

@@ -231,6 +231,34 @@ TEST_P(BackendContract, TransportOptionsDoNotAffectTheGeometry) {
     expect_same_geometry("renderer");
 }
 
+// Each sample for itself: it never adds light, does not change direct light, and a limit that nothing reaches
+// changes no bit.
+TEST_P(BackendContract, AClampLimitsIndirectLightAlone) {
+    const FilmTile free = render(*backend, whole, {0, 0});
+    view.clamp_indirect = 1e30f;
+    EXPECT_TRUE(frame::identical_bits(free, render(*backend, whole, {0, 0})));
+    view.clamp_indirect = 1e-3f;
+    const FilmTile clamped = render(*backend, whole, {0, 0});
+    const auto plane = [&](const FilmTile& film, frame::Channel channel, std::uint32_t c) {
+        return film.plane(view.channels.first_plane(channel) + c);
+    };
+    double before = 0.0, after = 0.0;
+    for (std::uint32_t c = 0; c < 3; ++c) {
+        for (std::size_t pixel = 0; pixel < whole.pixel_count(); ++pixel) {
+            ASSERT_EQ(plane(clamped, frame::Channel::LowVariance, c)[pixel],
+                      plane(free, frame::Channel::LowVariance, c)[pixel]);
+            const float most = plane(free, frame::Channel::HighVariance, c)[pixel],
+                        rest = plane(clamped, frame::Channel::HighVariance, c)[pixel];
+            ASSERT_LE(rest, most);
+            ASSERT_LE(rest, 0.1f) << "up to 2 contributions at each of 50 vertices";
+            before += most;
+            after += rest;
+        }
+    }
+    EXPECT_GT(after, 0.0);
+    EXPECT_LT(after, 0.5 * before);
+}
+
 // It renders with the renderers of its capabilities, and rejects others with the remedy.
 TEST_P(BackendContract, HasTheRenderersOfItsCapabilities) {
     const view::RendererSet renderers = backend->capabilities().renderers;

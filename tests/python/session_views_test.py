@@ -156,6 +156,15 @@ class Views(WithMaster):
         with self.assertRaisesRegex(tessera.InvalidInput, "32 bits"):
             self.session.open_view(self.POSE, layers=1 << 32)
 
+    def test_clamp(self):
+        self.session.open_view(self.POSE, size=(8, 4))
+        self.assertEqual(self.master.views[1][0].wanted.view.clamp_indirect, 0.0)
+        self.session.open_view(self.POSE, size=(8, 4), clamp=2.5)
+        self.assertEqual(self.master.views[2][0].wanted.view.clamp_indirect, 2.5)
+        for clamp in (0.0, -1.0, math.inf, math.nan):
+            with self.subTest(clamp=clamp), self.assertRaisesRegex(tessera.InvalidInput, "above 0"):
+                self.session.open_view(self.POSE, clamp=clamp)
+
     def test_picking(self):
         view = self.session.open_view(self.POSE, size=(8, 4))
         self.assertIsNone(view.pick(0, 0))

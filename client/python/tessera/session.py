@@ -293,29 +293,32 @@ class Session(SessionNames):
     def open_view(self, at: CameraLike, *, size: tuple[int, int] = (1280, 720), spp: int = 64, picture: str = "png",
                   film: bool = False, name: str = "", filter: str | None = None, renderer: str = "path", bounces: int = 8,
                   seed: int = 0, channels: Sequence[str] = ("radiance",), layers: int = ALL_LAYERS,
-                  budget: float | None = None, exposure: float | None = None, view_transform: str = "neutral") -> View:
+                  clamp: float | None = None, budget: float | None = None, exposure: float | None = None,
+                  view_transform: str = "neutral") -> View:
         """A view from a camera of the scene (the object or its path) or a Pose (`look_at`). `picture`: "png", "jpeg", "exr",
         "planes" (filtered float32) or "none"; `film`: also deliver the statistics of `channels`. `layers`: a mask, bit i is
-        object layer i; other objects are invisible. `filter`: the denoiser; None: "psvgf" for "png" and "jpeg"
+        object layer i; other objects are invisible. `clamp`: most that a path adds to a sample after its second bounce, which
+        makes the picture too dark (biased); None: no limit. `filter`: the denoiser; None: "psvgf" for "png" and "jpeg"
         without `film`, else none. `budget`: time in seconds for samples, filter and encoding
         together. `exposure` of "png" and "jpeg" in EV, None: measured once, on the first
         picture; `view_transform`: "neutral", "agx", "reinhard" or "linear"."""
         if filter is None:
             filter = LIVE_FILTER if picture in ("png", "jpeg") and not film else ""
         view = plain_view(size, channels=channels, renderer=renderer, bounces=bounces, seed=seed, filter=filter,
-                          layers=layers)
+                          layers=layers, clamp=clamp)
         self.aim(view, at)
         return self._open(self._request(view, spp, picture, film, name, budget, exposure, view_transform))
 
     def render(self, at: CameraLike, *, size: tuple[int, int] = (1280, 720), spp: int = 64, picture: str = "png",
                film: bool = False, filter: str = "", renderer: str = "path", bounces: int = 8, seed: int = 0,
-               channels: Sequence[str] = ("radiance",), layers: int = ALL_LAYERS, budget: float | None = None,
-               exposure: float | None = None, view_transform: str = "neutral", min_nodes: int = 1, wait: float = 60.0,
+               channels: Sequence[str] = ("radiance",), layers: int = ALL_LAYERS, clamp: float | None = None,
+               budget: float | None = None, exposure: float | None = None, view_transform: str = "neutral",
+               min_nodes: int = 1, wait: float = 60.0,
                on_progress: Callable[[Progress], None] | None = None) -> Rendered:
         """Renders one picture (arguments as in `open_view`) and returns its last frame and summary. Starts when `min_nodes` are
         ready, and gives up after `wait` seconds without nodes (outcome "no_nodes"). Calls `on_progress` with the progress."""
         view = plain_view(size, channels=channels, renderer=renderer, bounces=bounces, seed=seed, filter=filter,
-                          layers=layers)
+                          layers=layers, clamp=clamp)
         self.aim(view, at)
         request = self._request(view, spp, picture, film, "", budget, exposure, view_transform)
         request.wanted.frames, request.wanted.min_nodes = LAST_FRAME_ONLY, min_nodes

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Callable, Sequence
@@ -254,14 +255,16 @@ def set_size(view: Message, size: tuple[int, int]) -> None:
 
 
 def plain_view(size: tuple[int, int], *, channels: Sequence[str], renderer: str, bounces: int, seed: int,
-               filter: str, layers: int) -> Message:
+               filter: str, layers: int, clamp: float | None = None) -> Message:
     """A View message without a camera."""
+    if clamp is not None and not 0.0 < clamp < math.inf:
+        raise InvalidInput("clamp is not a number above 0: most that a path adds to a sample after its second bounce")
     if not 0 <= layers <= ALL_LAYERS:
         raise InvalidInput("the layers are not a mask of 32 bits: bit i is object layer i")
     if renderer not in RENDERERS:
         raise InvalidInput(f"there is no renderer '{renderer}': choose of {', '.join(RENDERERS)}")
     view = work_pb2.View(revision=1, seed=seed, max_bounces=bounces, filter_radius=0.5,
                          channels=channel_bits(list(channels)), renderer=RENDERERS.index(renderer),
-                         filter=filter.encode(), hidden_layers=ALL_LAYERS & ~layers)
+                         filter=filter.encode(), hidden_layers=ALL_LAYERS & ~layers, clamp_indirect=clamp or 0.0)
     set_size(view, size)
     return view

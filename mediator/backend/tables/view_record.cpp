@@ -107,7 +107,9 @@ shading::View make_view(const view::View& view, const glm::dvec3& render_origin)
         .camera_keys = {},
         .camera_key_intervals = static_cast<std::uint32_t>(camera.motion.size()),
         .containing_media = shading::no_media(),
-        .max_specular_events = view.max_specular_bounces};
+        .max_specular_events = view.max_specular_bounces,
+        .clamp_indirect = view.clamp_indirect,
+        .unused = 0};
 }
 
 std::vector<shading::Affine3x4> camera_keys(const view::CameraPose& camera, const glm::dvec3& render_origin) {
