@@ -266,7 +266,7 @@ FilterEntry fdf_entry() {
         {.name = "fdf",
          .summary = "feature distances: albedo, normal and prefiltered shading guide a bilateral mean",
          .source = "Lardinoije 4.2",
-         .bytes_per_pixel = 184,
+         .bytes_per_pixel = 192,
          .parameters =
              {{"radius", "px", "of the window", 8, 0, FeatureMaxRadius, {}},
               {"t_max", "", "difference of albedo at which the weight is 1/e", 0.03, 1e-4, 100, {}},

@@ -254,7 +254,7 @@ FilterEntry nfor_entry() {
         {.name = "nfor",
          .summary = "first-order regression on features, weights by NL-means of halves; slow",
          .source = "Bitterli et al. 2016",
-         .bytes_per_pixel = 610,
+         .bytes_per_pixel = 618,
          .parameters = {{"radius", "px", "radius of the window of a fit", 9, 1, MaxRadius, {}},
                         {"patch", "px", "radius of the patches compared for weights", 3, 0, MaxPatch, {}},
                         {"stride", "px", "distance between the centres of fits", 1, 0, 2, {"1", "2", "4"}},

@@ -182,7 +182,7 @@ FilterEntry oidn_entry() {
                         .summary =
                             "the neural network of Open Image Denoise, where that is installed; on the CPU",
                         .source = "Intel Open Image Denoise",
-                        .bytes_per_pixel = 208,
+                        .bytes_per_pixel = 216,
                         .parameters = {{"blend",
                                         "",
                                         "blend back to the samples where filtering would increase the error",

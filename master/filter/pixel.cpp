@@ -313,7 +313,7 @@ FilterEntry pixel_entry() {
     return {{.name = "pixel",
              .summary = "cross-bilateral filter of the high-variance light, blended by perceived variance",
              .source = "Schwenk 3",
-             .bytes_per_pixel = 280,
+             .bytes_per_pixel = 288,
              .parameters = pixel_parameters(),
              .channels =
                  [](const Values& values) {

@@ -330,7 +330,7 @@ FilterEntry psvgf_entry() {
         {.name = "psvgf",
          .summary = "progressive SVGF: history and edge-stopping wavelets on the diffuse irradiance",
          .source = "Dundr 2",
-         .bytes_per_pixel = 670,
+         .bytes_per_pixel = 678,
          .parameters = psvgf_parameters(),
          .channels = [](const Values&) { return Needed; },
          .consistent = true,

@@ -336,7 +336,7 @@ FilterEntry statmc_entry() {
         {.name = "statmc",
          .summary = "averages pixels with statistically indistinguishable means (confidence intervals)",
          .source = "Sakai et al. 2024",
-         .bytes_per_pixel = 300,
+         .bytes_per_pixel = 308,
          .parameters =
              {{"radius", "px", "radius of the square window (20 in the paper)", 10, 1, 40, {}},
               {"sigma", "px", "standard deviation of the spatial weight (10 in the paper)", 5, 0.1, 100, {}},
