@@ -29,9 +29,8 @@ enum Term : std::uint32_t {
     TermCount = Square + Bands
 };
 constexpr std::array<std::uint32_t, 4> ForUnseen{Noise, Amplitude, Light, Variance};
-constexpr std::array<std::uint32_t, 2> ForUnseenNear{Noise, Light};
 constexpr std::array<std::uint32_t, 2 + Bands> ForWeights{Noise, NoiseSquare, Square, Square + 1, Square + 2};
-constexpr Term PooledNoise = Amplitude;  // once the weights are known: root of the sum of Noise
+constexpr Term PooledNoise = Amplitude;  // once the weights are known: S times the root of the sum of Noise
 
 // The variance of each band where every pixel has independent noise of variance 1, from the sums of squares and of
 // products of the kernels.
@@ -192,42 +191,33 @@ class SquareSums {
 
 // Of the mean variance around it: a pixel with less has seen next to nothing of what causes that variance.
 constexpr float UnseenShare = 0.02f;
-constexpr float LeastDarker = 1e-3f;     // of the brightness of U to that of F: above 0 for any U
-constexpr std::uint32_t NearRadius = 2;  // of the square that sees at most one find where light is rare
-constexpr float MostExpected = 1e6f;     // finds
+constexpr float LeastDarker = 1e-3f;  // of the brightness of U to that of F: above 0 for any U
+constexpr float RareArea = 25.0f;     // pixels that see at most one find where light is rare
+constexpr float MostExpected = 1e6f;  // finds
 constexpr float CommonFinds =
     16.0f;  // finds of unequal strengths that are hardly all missed, from here to twice as many
 
-// Probability of two finds or more where `expected` are.
-inline float two_or_more(float expected) {
-    return 1.0f - exp_negative(-expected) * (1.0f + expected);
-}
-
-// The sums of one row over the squares of both sizes, and what its pixels have themselves.
+// What the pixels of a row have themselves, and the sums over the squares around them.
 struct UnseenRow {
     const float *own_noise, *own_light;
     const float *noise, *amplitude, *light, *variance;
-    const float *near_noise, *near_light;
 };
 
 // Of the pixels of one row that have seen next to nothing of the light that makes the noise around them: the
-// probability that the light of F is not there. 0 elsewhere. `area`, `near_area`: pixels of the squares.
-void find_unseen(const UnseenRow& row, std::size_t width, float area, float near_area,
-                 float* __restrict unseen) {
+// probability that the light of F is not there. 0 elsewhere. `area`: pixels of a square.
+void find_unseen(const UnseenRow& row, std::size_t width, float area, float* __restrict unseen) {
     for (std::size_t x = 0; x < width; ++x) {
-        const float seen = row.amplitude[x] * row.amplitude[x] / std::max(row.noise[x], 1e-37f);
-        const float few = exp_negative(-seen) * (1.0f + seen + 0.5f * seen * seen);
-        const float share = seen * (near_area / area);
-        const float rare = exp_negative(-share) * (1.0f + share);
-        // 1e18 keeps the products below finite.
+        const float finds = row.amplitude[x] * row.amplitude[x] / std::max(row.noise[x], 1e-37f);
+        const float few = exp_negative(-finds) * (1.0f + finds + 0.5f * finds * finds);
+        const float nearby = finds * (RareArea / area);
+        const float rare = exp_negative(-nearby) * (1.0f + nearby);
+        // 1e18 keeps the product below finite.
         const float per_light = std::min(row.light[x] / std::max(row.variance[x], 1e-37f), 1e18f);
-        const float here = std::min(row.own_light[x] * per_light, MostExpected);
-        const float near = std::min(row.near_light[x] * per_light, MostExpected);
-        const float limit = UnseenShare * row.noise[x];
-        const float missed = std::max(
-            two_or_more(here), row.near_noise[x] * area < limit * near_area ? two_or_more(near) : 0.0f);
-        const float common = std::clamp(here / CommonFinds - 1.0f, 0.0f, 1.0f);
-        unseen[x] = row.own_noise[x] * area < limit ? std::max({few, rare * missed, common}) : 0.0f;
+        const float expected = std::min(row.own_light[x] * per_light, MostExpected);
+        const float missed = 1.0f - exp_negative(-expected);
+        const float common = std::clamp(expected / CommonFinds - 1.0f, 0.0f, 1.0f);
+        const bool is_dark = row.own_noise[x] * area < UnseenShare * row.noise[x];
+        unseen[x] = is_dark ? std::max({few, rare * missed, common}) : 0.0f;
     }
 }
 
@@ -292,9 +282,7 @@ bool ConvergenceBlend::weigh(const Inputs& inputs, frame::Channel filtered_part,
     for (Planes* planes : {&residual_, &wide_, &relative_, &narrow_})
         shape(*planes, inputs, filtered.components());
     const std::size_t width = inputs.width;
-    const std::size_t unseen = SquareSums::size(width, radius_, ForUnseen.size()) +
-                               SquareSums::size(width, NearRadius, ForUnseenNear.size()) + 2 * width + 6;
-    scratch_.reserve(context, std::max(unseen, SquareSums::size(width, radius_, ForWeights.size())));
+    scratch_.reserve(context, SquareSums::size(width, radius_, ForWeights.size()) + 2 * width + 6);
     const std::uint32_t blocks = SquareSums::block_count(inputs.height);
     return for_rows(context, inputs.height,
                     [&](std::uint32_t y) {
@@ -307,7 +295,9 @@ bool ConvergenceBlend::weigh(const Inputs& inputs, frame::Channel filtered_part,
                for (std::uint32_t i = 0; i < sums.row_count(); ++i) {
                    // Its term is not among the sums of other blocks, which may still be to come.
                    float* noise = terms_.row(PooledNoise, sums.first_row() + i);
-                   for (std::size_t x = 0; x < width; ++x) noise[x] = std::sqrt(sums.row(0, i)[x]);
+                   const Scale scale(filtered, 0, sums.first_row() + i, floor);
+                   for (std::size_t x = 0; x < width; ++x)
+                       noise[x] = std::sqrt(sums.row(0, i)[x]) * scale.at(x);
                    for (std::uint32_t band = 0; band < Bands; ++band) {
                        divide(sums.row(0, i), sums.row(1, i), sums.row(2 + band, i), width, NoiseGain[band],
                               weights_.row(band, sums.first_row() + i));
@@ -318,17 +308,14 @@ bool ConvergenceBlend::weigh(const Inputs& inputs, frame::Channel filtered_part,
 
 void ConvergenceBlend::fill_bands(const Planes& filtered, float floor, std::uint32_t block) {
     const std::size_t width = filtered.width();
-    float* memory = scratch_.local();
-    const SquareSums sums(terms_, ForUnseen, block, radius_, memory);
-    memory += SquareSums::size(width, radius_, ForUnseen.size());
-    const SquareSums near(terms_, ForUnseenNear, block, NearRadius, memory);
-    float* unseen = memory + SquareSums::size(width, NearRadius, ForUnseenNear.size());
-    const auto area = [](std::uint32_t radius) { return squared(2.0 * radius + 1.0); };
+    const SquareSums sums(terms_, ForUnseen, block, radius_, scratch_.local());
+    float* unseen = scratch_.local() + SquareSums::size(width, radius_, ForUnseen.size());
+    const float side = 2.0f * static_cast<float>(radius_) + 1.0f;
     for (std::uint32_t i = 0; i < sums.row_count(); ++i) {
         const std::uint32_t y = sums.first_row() + i;
         find_unseen({terms_.row(Noise, y), terms_.row(Light, y), sums.row(0, i), sums.row(1, i),
-                     sums.row(2, i), sums.row(3, i), near.row(0, i), near.row(1, i)},
-                    width, static_cast<float>(area(radius_)), static_cast<float>(area(NearRadius)), unseen);
+                     sums.row(2, i), sums.row(3, i)},
+                    width, side * side, unseen);
         for (std::uint32_t band = 0; band < Bands; ++band)
             std::fill_n(terms_.row(Square + band, y), width, 0.0f);
         for (std::uint32_t c = 0; c < filtered.components(); ++c) {
@@ -338,63 +325,6 @@ void ConvergenceBlend::fill_bands(const Planes& filtered, float floor, std::uint
                 fill_squares(bands_of(relative_, narrow_, wide_, filtered, floor, c, y), unseen, y, terms_);
         }
     }
-}
-
-// What the blend took from the picture, by rows and as a whole; its variance is known of light, not of alpha.
-bool ConvergenceBlend::restore_light(const Inputs& inputs, frame::Channel filtered_part, Planes& picture,
-                                     RunContext& context) {
-    const std::uint32_t width = inputs.width, components = picture.components();
-    const auto opaque = [&](std::uint32_t y, std::uint32_t x) {
-        return components > 3 ? picture.row(3, y)[x] : 1.0f;
-    };
-    losses_.assign(inputs.height, {});
-    const bool done = for_rows(context, inputs.height, [&](std::uint32_t y) {
-        const float *counts = inputs.counts.row(0, y), *noise = terms_.row(PooledNoise, y);
-        Loss& loss = losses_[y];
-        for (std::uint32_t c = 0; c < components; ++c) {
-            const float* u = inputs.color(c).data() + std::size_t{y} * width;
-            const float* out = picture.row(c, y);
-            for (std::uint32_t x = 0; x < width; ++x)
-                loss.light[c] += counts[x] < 2.0f ? 0.0 : double(u[x]) - double(out[x]);
-        }
-        for (std::uint32_t c = 0; c < 3; ++c) {
-            const float* v = inputs.variance(filtered_part).row(c, y);
-            for (std::uint32_t x = 0; x < width; ++x)
-                loss.variance[c] += counts[x] < 2.0f ? 0.0 : double(v[x]);
-        }
-        for (std::uint32_t x = 0; x < width; ++x)
-            loss.noise += counts[x] < 2.0f ? 0.0 : double(noise[x] * opaque(y, x));
-    });
-    if (!done) return false;
-    Loss all;
-    for (const Loss& row : losses_) {
-        for (std::size_t c = 0; c < 4; ++c) all.light[c] += row.light[c];
-        for (std::size_t c = 0; c < 3; ++c) all.variance[c] += row.variance[c];
-        all.noise += row.noise;
-    }
-    if (!(all.noise > 0.0)) return true;
-    std::array<float, 4> gain{};  // light, or alpha, per unit of noise
-    double certain = 0.0;         // mean part of the loss that is not noise
-    for (std::size_t c = 0; c < 3; ++c) {
-        const double bias = all.light[c] * all.light[c] - all.variance[c];
-        if (bias <= 0.0) continue;
-        const double part = bias / (bias + all.variance[c]);
-        certain += part / 3.0;
-        gain[c] = static_cast<float>(part * all.light[c] / all.noise);
-    }
-    if (certain == 0.0) return true;
-    gain[3] = static_cast<float>(certain * all.light[3] / all.noise);
-    return for_rows(context, inputs.height, [&](std::uint32_t y) {
-        const float *counts = inputs.counts.row(0, y), *noise = terms_.row(PooledNoise, y);
-        for (std::uint32_t c = 0; c < components; ++c) {  // alpha last, on which the others depend
-            float* out = picture.row(c, y);
-            const float most = c == 3 ? 1.0f : std::numeric_limits<float>::max();
-            for (std::uint32_t x = 0; x < width; ++x) {
-                const float more = counts[x] < 2.0f ? 0.0f : gain[c] * noise[x] * opaque(y, x);
-                out[x] = std::clamp(out[x] + more, 0.0f, most);
-            }
-        }
-    });
 }
 
 bool ConvergenceBlend::apply(const Inputs& inputs, frame::Channel filtered_part,
@@ -418,7 +348,7 @@ bool ConvergenceBlend::apply(const Inputs& inputs, frame::Channel filtered_part,
             }
         }
     });
-    return done && restore_light(inputs, filtered_part, picture, context);
+    return done && lost_light_.restore(inputs, filtered_part, terms_.plane(PooledNoise), picture, context);
 }
 
 }  // namespace tessera::filter

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <span>
 #include <vector>
 
+#include "master/filter/lost_light.h"
 #include "master/filter/scratch.h"
 
 namespace tessera::filter {
@@ -37,22 +37,20 @@ namespace tessera::filter {
 // Differences are relative to S, as in relMSE, so that bright pixels do not decide for dark neighbours. Where light is
 // found rarely that underestimates the error of spreading it: a dark pixel that F makes bright is measured against that
 // brightness. A pixel has seen next to nothing of what causes the variance if its own is below 2 % of the mean in the
-// square. If F makes it brighter, it may be wrong, or the pixel was unlucky: where N_0 says that 5 x 5 pixels contain at
-// most one find, dark pixels that happened to find nothing look the same. If the light of F were there, in finds of
-// sum V / sum |F|, the pixel would contain e = |F| sum |F| / sum V of them. So the difference is divided by the darker
-// of U and F instead, weighted by the probability that the light of F is not there. That is
+// square. If F makes it brighter, it may be wrong, or the pixel was unlucky: dark pixels that happened to find nothing
+// look the same. The difference is divided by the darker of U and F instead, weighted by the probability that the light
+// of F is not there. That is the greatest of
 //
-//     e^-E (1 + E) P(e)      P(e) = 1 - e^-e (1 + e), also of 5 x 5 pixels that saw nothing together
+//     e^-q (1 + q + q^2 / 2)           the square has so few finds that they say nothing
+//     e^-E (1 + E) (1 - e^-e)          light is rare, and the pixel would have found something
+//     0 to 1 from e = 16 to 32         the pixel would have found much (finds differ in strength)
 //
-// where the square contains q = (sum A)^2 / sum A^2 finds, A^2 = N_0, and E is the part of them in 25 pixels; where light
-// is not rare, 1 from e = 32 on, falling to 0 at 16, since the strengths of finds differ; and where the square has so
-// few of them that they say nothing, e^-q (1 + q + q^2 / 2).
+// where q = (sum A)^2 / sum A^2, A^2 = N_0, are the finds of the square, E those of 25 pixels of it, and
+// e = |F| sum |F| / sum V those of the pixel, if its light is that of F.
 //
 // Where the samples found nothing their variance is small as well, so that w is smaller there than where they found much:
-// the blend takes light away. What the whole picture lost of each component, D = sum (U - out), is known far better
-// than any pixel: D^2 exceeds its noise sum V by the square of the loss. The part 1 - V / (V + max(0, D^2 - V)) of D is
-// given back, to each pixel in proportion to the root of the noise around it (sum N_0), from where it was taken, times
-// alpha.
+// the blend takes light away. lost_light.h gives it back, in proportion to S times the root of the noise around each
+// pixel (sum N_0), from where it was taken.
 //
 // Pixels with n < 2 have no known variance: they keep F and do not contribute. Alpha has the bands and w of the light.
 // Light below 0 and alpha outside [0, 1] become 0 or 1, which are nearer to any truth.
@@ -91,20 +89,13 @@ class ConvergenceBlend {
     bool weigh(const Inputs& inputs, frame::Channel filtered_part, std::span<const float> self_weight,
                const Planes& filtered, float floor, RunContext& context);
     void fill_bands(const Planes& filtered, float floor, std::uint32_t block);
-    bool restore_light(const Inputs& inputs, frame::Channel filtered_part, Planes& picture,
-                       RunContext& context);
 
     std::uint32_t radius_;
     Planes residual_, wide_;    // U - F and its coarse band
     Planes relative_, narrow_;  // U - F divided by F and smoothed
     Planes terms_, weights_;
     std::vector<double> row_sums_;
-    struct Loss {
-        std::array<double, 4> light{};
-        std::array<double, 3> variance{};
-        double noise = 0.0;
-    };
-    std::vector<Loss> losses_;  // by row
+    LostLight lost_light_;
     Scratch scratch_;
 };
 

@@ -142,7 +142,7 @@ TEST_P(FilterContract, AlphaHasTheWeightsOfTheRadiance) {
         }
     }
     // The light of pixel exceeds 1 in places, where alpha stays 1: its blend takes and gives back a little less of it.
-    EXPECT_LE(worst, is_one_of({"pixel"}) ? 0.01 : 1e-5)
+    EXPECT_LE(worst, is_one_of({"pixel"}) ? 0.02 : 1e-5)
         << name() << ": radiance = alpha went in and did not come out";
 }
 
