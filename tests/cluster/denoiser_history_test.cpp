@@ -11,6 +11,7 @@
 #include "mediator/filter/inputs.h"
 #include "mediator/frame/resolve.h"
 #include "mediator/scene/fields.h"
+#include "tests/cluster/lit_room.h"
 #include "tests/cluster/loopback_cluster.h"
 
 namespace tessera::test {
@@ -20,60 +21,6 @@ using namespace scene;
 using namespace std::chrono_literals;
 
 constexpr std::uint32_t Width = 160, Height = 128;  // 1/8 of it still has coarse pictures
-
-// A room with two lamps at its ceiling and a box on its floor, around the axis of a camera at the origin.
-class Room {
-  public:
-    Room(client::Session& session, BlobStore& blobs)
-        : session_(session), blobs_(blobs), place_(session.new_id()) {
-        const ObjectId white = material({}), red = material({.base_color = {0.7f, 0.1f, 0.1f, 1.0f}});
-        for (ObjectId& lamp : lamps_) lamp = material({.emission = glm::vec3(20.0f)});
-        const auto wall = [&](ObjectId of, glm::vec3 corner, glm::vec3 right, glm::vec3 up) {
-            quad(of, {corner, corner + right, corner + right + up, corner + up});
-        };
-        wall(white, {-1.5f, -1, -1}, {3, 0, 0}, {0, 0, -3});          // floor
-        wall(white, {-1.5f, 1, -4}, {3, 0, 0}, {0, 0, 3});            // ceiling
-        wall(red, {-1.5f, -1, -1}, {0, 0, -3}, {0, 2, 0});            // left
-        wall(white, {1.5f, -1, -4}, {0, 0, 3}, {0, 2, 0});            // right
-        wall(white, {-1.5f, -1, -4}, {3, 0, 0}, {0, 2, 0});           // back
-        wall(white, {-0.3f, -1, -2.2f}, {0.6f, 0, 0}, {0, 0.7f, 0});  // the box's front
-        wall(white, {-0.3f, -0.3f, -2.2f}, {0.6f, 0, 0}, {0, 0, -0.6f});
-        wall(lamps_[0], {-1.0f, 0.95f, -2.7f}, {0.4f, 0, 0}, {0, 0, 0.4f});
-        wall(lamps_[1], {0.6f, 0.95f, -2.7f}, {0.4f, 0, 0}, {0, 0, 0.4f});
-        entries_.emplace_back(Create{place_, Transform{.children = parts_}});
-        entries_.emplace_back(
-            Update{RootId, Fields<Root>(&Root::children).bits(), Root{.children = {place_}}});
-    }
-    const std::vector<Entry>& entries() const { return entries_; }
-    Update shine(std::size_t lamp, float emission) const {
-        return {lamps_[lamp], Fields<Material>(&Material::emission).bits(),
-                Material{.emission = glm::vec3(emission)}};
-    }
-
-  private:
-    ObjectId material(Material material) {
-        material.double_sided = true;
-        const ObjectId id = session_.new_id();
-        entries_.emplace_back(Create{id, std::move(material)});
-        return id;
-    }
-    void quad(ObjectId material, const std::array<glm::vec3, 4>& corners) {
-        constexpr std::array<std::uint32_t, 6> Indices{0, 1, 2, 0, 2, 3};
-        parts_.push_back(session_.new_id());
-        entries_.emplace_back(
-            Create{parts_.back(),
-                   Geometry{.material = material,
-                            .indices = reference(*blobs_.insert(std::as_bytes(std::span(Indices)))),
-                            .positions = reference(*blobs_.insert(std::as_bytes(std::span(corners))))}});
-    }
-
-    client::Session& session_;
-    BlobStore& blobs_;
-    ObjectId place_;
-    std::array<ObjectId, 2> lamps_;
-    std::vector<ObjectId> parts_;
-    std::vector<Entry> entries_;
-};
 
 session::ViewRequest request_of(const std::string& filter, std::uint64_t spp) {
     session::ViewRequest request{
@@ -130,7 +77,7 @@ struct DenoiserHistory : testing::Test {
     LoopbackCluster cluster;
     std::shared_ptr<BlobStore> blobs = std::make_shared<BlobStore>();
     std::unique_ptr<client::Session> ann = cluster.member("ann", blobs);
-    Room room{*ann, *blobs};
+    LitRoom room{*ann, *blobs};
 
     void SetUp() override {
         cluster.add_node("embree");
