@@ -195,7 +195,9 @@ Expected<ViewPlan> parse_options(const ViewOptions& options) {
     if (options.clamp) {
         const auto most = static_cast<float>(*options.clamp);
         if (!(most > 0.0f) || !std::isfinite(most))
-            return wrong("--clamp", "'" + edit::number_text(*options.clamp) + "' is not a number above 0");
+            return failure(ErrorCode::InvalidInput,
+                           "--clamp: '" + edit::number_text(*options.clamp) +
+                               "' is not a number above 0; leave it out for no limit");
         plan.view.clamp_indirect = most;
     }
     for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted,

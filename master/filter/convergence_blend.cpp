@@ -12,6 +12,9 @@ namespace tessera::filter {
 
 namespace {
 
+// A component whose Scale is that of the light as a whole: alpha's.
+constexpr std::uint32_t Grey = 3;
+
 // Relative deviations and differences, so that sums of squares stay finite.
 constexpr float Most = 1e15f, Largest = 1e37f;
 
@@ -194,8 +197,8 @@ constexpr float UnseenShare = 0.02f;
 constexpr float LeastDarker = 1e-3f;  // of the brightness of U to that of F: above 0 for any U
 constexpr float RareArea = 25.0f;     // pixels that see at most one find where light is rare
 constexpr float MostExpected = 1e6f;  // finds
-constexpr float CommonFinds =
-    16.0f;  // finds of unequal strengths that are hardly all missed, from here to twice as many
+// So many finds of unequal strengths are hardly all missed, and twice as many never.
+constexpr float CommonFinds = 16.0f;
 
 // What the pixels of a row have themselves, and the sums over the squares around them.
 struct UnseenRow {
@@ -295,7 +298,7 @@ bool ConvergenceBlend::weigh(const Inputs& inputs, frame::Channel filtered_part,
                for (std::uint32_t i = 0; i < sums.row_count(); ++i) {
                    // Its term is not among the sums of other blocks, which may still be to come.
                    float* noise = terms_.row(PooledNoise, sums.first_row() + i);
-                   const Scale scale(filtered, 0, sums.first_row() + i, floor);
+                   const Scale scale(filtered, Grey, sums.first_row() + i, floor);
                    for (std::size_t x = 0; x < width; ++x)
                        noise[x] = std::sqrt(sums.row(0, i)[x]) * scale.at(x);
                    for (std::uint32_t band = 0; band < Bands; ++band) {
