@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Usage: deploy/bench.sh [--docs]
 #
-# Sets up, builds and runs the benchmarks one after the other (about 50 minutes on 2 cores) and writes them as one page,
+# Sets up, builds and runs the benchmarks one after the other (about an hour on 2 cores) and writes them as one page,
 # out/bench/benchmarks.md. Each figure is next to the limit that bounds it. Run it on an otherwise idle machine.
 #   --docs  writes docs/benchmarks.md instead
 set -euo pipefail
@@ -49,6 +49,9 @@ run fog.txt "$bin/tessera_light_bench" fog
 run skies.txt "$bin/tessera_light_bench" skies
 run filters.json "$bin/tessera" bench filters -o "$out/filters" --scenes room-1,studio-1,interior-1,still --spp 4 --large none \
     --reference-spp 512 --json
+run consistency.json "$bin/tessera" bench consistency --spp 4,16,64,256 --seeds 4 --reference-spp 2048 \
+    --references "$out/references" --json
+run variance.json "$bin/tessera" bench variance --json
 run backends.txt "$bin/tessera" bench backends --scenes room-1,studio-1,interior-1,balls:1000000 --spp 4 --repeat 3
 run live.txt "$bin/tessera" bench live
 run wire.txt /usr/bin/python3 tests/bench/wire/wire_bench.py --bin "$bin" --spp 16 --pairs 5 --no-targets

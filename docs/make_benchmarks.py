@@ -6,6 +6,7 @@ Every number on the page comes from those files; this script has the sentences b
 
 import datetime
 import json
+import math
 import pathlib
 import platform
 import re
@@ -95,6 +96,34 @@ def quality_rows(report, spp):
                        f"{row['flip_mean']:.3f} | {short(row['filter_milliseconds'])} | {short(ratio['value']) if ratio else ''} |")
 
 
+def consistency_rows(report):
+    """How denoisers keep their promise: error, light and specks of each number of samples, over all scenes."""
+    yield "| spp | denoiser | relMSE | most | trimmed | most | light | specks | without it |\n|---|---|---|---|---|---|---|---|---|"
+    cells = [(cell, scene["scene"]) for scene in report for cell in scene["cells"]]
+    for spp in sorted({cell["spp"] for cell, _ in cells}):
+        specks = {scene: cell["specks"] for cell, scene in cells if cell["spp"] == spp and cell["filter"] == "none"}
+        for name in dict.fromkeys(cell["filter"] for cell, _ in cells if cell["filter"] != "none"):
+            of_name = [(cell, scene) for cell, scene in cells if cell["spp"] == spp and cell["filter"] == name]
+            row = [str(spp), f"`{name}`"]
+            for key in ("relmse_over_unfiltered", "trimmed_relmse_over_unfiltered"):
+                ratios = [(cell[key]["mean"], scene + "*" * (cell["rare_light"] > 0.01)) for cell, scene in of_name]
+                mean = math.exp(sum(math.log(max(ratio, 1e-9)) for ratio, _ in ratios) / len(ratios))
+                row += [f"{mean:.2f}", f"{max(ratios)[0]:.2f} `{max(ratios)[1]}`"]
+            light = [cell["energy"] for cell, _ in of_name]
+            row.append(f"{min(light):.3f} to {max(light):.3f}")
+            row.append(f"{100 * sum(cell['specks'] for cell, _ in of_name) / len(of_name):.1f} %")
+            row.append(f"{100 * sum(specks.values()) / len(specks):.1f} %")
+            yield "| " + " | ".join(row) + " |"
+
+
+def variance_rows(report):
+    yield "| scene | spp | blocks | in 0.7 to 2 | smallest | median | largest | picture | as if independent |\n|---|---|---|---|---|---|---|---|---|"
+    for scene in report:
+        for row in scene["rows"]:
+            yield (f"| `{scene['scene']}` | {row['spp']} | {row['blocks']} | {100 * row['within']:.0f} % | {row['smallest']:.2f} | "
+                   f"{row['median']:.2f} | {row['largest']:.2f} | {row['picture']:.2f} | {row['picture_independent']:.2f} |")
+
+
 def page(folder, version):
     yield INTRODUCTION
     yield machine(version)
@@ -107,6 +136,17 @@ def page(folder, version):
            f"Films of 4 samples per pixel, {size['width']}x{size['height']}. relMSE leaves out the worst 0.1 % of the pixels; *equivalent spp* is how many "
            "times the samples a picture without a denoiser needs for the same error.\n")
     yield "\n".join(quality_rows(quality, 4)) + "\n"
+    consistency = json.loads((folder / "consistency.json").read_text())
+    yield ("## Denoisers: what consistent means\n\n"
+           f"Over {', '.join('`' + scene['scene'] + '`' for scene in consistency)} (96x54, several seeds): relMSE over that of the same samples "
+           "without a denoiser, as geometric mean and in the worst scene, with and without the worst 0.1 % of the pixels; the part of the light that "
+           "is kept; and pixels that are specks, on average. A star marks scenes where more than 1 % of the light is too rare to be known at that "
+           "number of samples.\n")
+    yield "\n".join(consistency_rows(consistency)) + "\n"
+    yield ("## Accuracy of variances\n\n"
+           "Estimates of single films over the true variance, from 32 seeds, in blocks of 16x16 pixels that expect at least three finds per 5x5; of the "
+           "whole picture; and of that as if samples were not stratified. 1 is exact.\n")
+    yield "\n".join(variance_rows(json.loads((folder / "variance.json").read_text()))) + "\n"
     for name, heading, text in TEXTS:
         output = "\n".join(line.rstrip() for line in (folder / f"{name}.txt").read_text().strip().split("\n"))
         yield f"## {heading}\n\n{text}\n\n```\n{output}\n```\n"
