@@ -144,7 +144,7 @@ def page(folder, version):
            "number of samples.\n")
     yield "\n".join(consistency_rows(consistency)) + "\n"
     yield ("## Accuracy of variances\n\n"
-           "Estimates of single films over the true variance, from 32 seeds, in blocks of 16x16 pixels that expect at least three finds per 5x5; of the "
+           "Estimates of single films over the true variance, from 12 seeds, in blocks of 16x16 pixels that expect at least three finds per 5x5; of the "
            "whole picture; and of that as if samples were not stratified. 1 is exact.\n")
     yield "\n".join(variance_rows(json.loads((folder / "variance.json").read_text()))) + "\n"
     for name, heading, text in TEXTS:
