@@ -96,6 +96,12 @@ def quality_rows(report, spp):
                        f"{row['flip_mean']:.3f} | {short(row['filter_milliseconds'])} | {short(ratio['value']) if ratio else ''} |")
 
 
+def measured(folder, name):
+    """A line with the date of a part that is older than the newest one, for pages of which only some parts were renewed."""
+    day = {path.name: datetime.date.fromtimestamp(path.stat().st_mtime) for path in folder.glob("*.[jt][sx]*")}
+    return f"\nMeasured on {day[name].isoformat()}.\n" if day[name] < max(day.values()) else ""
+
+
 def consistency_rows(report):
     """How denoisers keep their promise: error, light and specks of each number of samples, over all scenes."""
     yield "| spp | denoiser | relMSE | most | trimmed | most | light | specks | without it |\n|---|---|---|---|---|---|---|---|---|"
@@ -128,7 +134,7 @@ def page(folder, version):
     yield INTRODUCTION
     yield machine(version)
     for name, heading, text, limit in MICRO:
-        yield f"## {heading}\n\n{text}\n"
+        yield f"## {heading}\n\n{text}\n{measured(folder, name + '.json')}"
         yield "\n".join(micro_table(json.loads((folder / f"{name}.json").read_text()), limit)) + "\n"
     quality = json.loads((folder / "filters.json").read_text())
     size = quality["scenes"][0]["sizes"][0]
@@ -149,7 +155,7 @@ def page(folder, version):
     yield "\n".join(variance_rows(json.loads((folder / "variance.json").read_text()))) + "\n"
     for name, heading, text in TEXTS:
         output = "\n".join(line.rstrip() for line in (folder / f"{name}.txt").read_text().strip().split("\n"))
-        yield f"## {heading}\n\n{text}\n\n```\n{output}\n```\n"
+        yield f"## {heading}\n\n{text}\n{measured(folder, name + '.txt')}\n```\n{output}\n```\n"
 
 
 def main():

@@ -2,20 +2,16 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <limits>
 
 #include "mediator/base/random.h"
+#include "mediator/shading/sample_values.h"
 
 namespace tessera::null_backend {
 
 using frame::Channel;
 
 namespace {
-
-float root_of(float radiance) {
-    return 2.0f * (std::sqrt(std::max(radiance, 0.0f)) - 1.0f);
-}
 
 std::uint64_t mixed(std::uint64_t key, std::uint64_t value) {
     return mix(key ^ mix(value + 0x9e3779b97f4a7c15ull));
@@ -98,7 +94,8 @@ void append_values(const Gradient& sample, frame::ChannelSet channels, std::vect
     if (channels.contains(Channel::ShadingFeature)) values.push_back(direct[1] + indirect[1]);
     add(Channel::Irradiance, direct);
     add(Channel::Color, radiance);
-    add(Channel::Root, {root_of(radiance[0]), root_of(radiance[1]), root_of(radiance[2])});
+    add(Channel::Root,
+        {shading::root_of(radiance[0]), shading::root_of(radiance[1]), shading::root_of(radiance[2])});
 }
 
 }  // namespace tessera::null_backend

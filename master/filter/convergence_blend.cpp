@@ -220,7 +220,7 @@ void find_unseen(const UnseenRow& row, std::size_t width, float area, float* __r
         const float missed = 1.0f - exp_negative(-expected);
         const float common = std::clamp(expected / CommonFinds - 1.0f, 0.0f, 1.0f);
         const bool is_dark = row.own_noise[x] * area < UnseenShare * row.noise[x];
-        unseen[x] = is_dark ? std::max({few, rare * missed, common}) : 0.0f;
+        unseen[x] = is_dark ? std::max(std::max(few, rare * missed), common) : 0.0f;
     }
 }
 

@@ -37,6 +37,9 @@ class LostLight {
         std::array<float, 4> per_noise() const;
     };
 
+    static void add_row(const Inputs& inputs, frame::Channel filtered_part, std::span<const float> noise,
+                        const Planes& picture, std::uint32_t y, Loss& loss, double* tiles);
+
     std::vector<Loss> losses_;   // by row of tiles
     std::vector<double> tiles_;  // 4 by tile
 };

@@ -1,4 +1,6 @@
 // The contract of every back-end in the catalog.
+#include "tests/contract/backend_contract.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,56 +11,14 @@
 #include <cstring>
 #include <thread>
 
-#include "mediator/backend/catalog.h"
 #include "mediator/frame/merge.h"
 #include "mediator/frame/render_revision.h"
-#include "tests/contract/contract_scene.h"
 
 namespace tessera::backend {
 namespace {
 
 using frame::FilmTile;
 using frame::SampleBlock;
-
-double root_of(double radiance) {
-    return 2.0 * (std::sqrt(std::max(radiance, 0.0)) - 1.0);
-}
-
-struct BackendContract : testing::TestWithParam<std::string> {
-    BackendContract() : backend(fresh()) {
-        test::commit(*backend, {builder.edit(test::contract_scene(*blobs))});
-        view = test::contract_view(backend->capabilities().channels);
-    }
-
-    std::unique_ptr<Backend> fresh() const {
-        return find_backend(GetParam()).make({.threads = 2, .isa = {}, .blobs = blobs});
-    }
-
-    view::WorkUnit unit(Rect tile, SampleBlock block) const {
-        return {.id = UnitId{1},
-                .view = view.id,
-                .revision = view.revision,
-                .version = backend->version(),
-                .tile = tile,
-                .block = block};
-    }
-
-    FilmTile render(Backend& with, Rect tile, SampleBlock block) const {
-        view::WorkUnit work = unit(tile, block);
-        work.version = with.version();
-        RenderResult result = with.render(view, work, {});
-        EXPECT_EQ(result.status, RenderStatus::Done);
-        EXPECT_EQ(result.blocks.size(), 1u);
-        EXPECT_EQ(result.blocks.at(0).block, block);
-        return std::move(result.blocks.at(0));
-    }
-
-    std::shared_ptr<scene::BlobStore> blobs = std::make_shared<scene::BlobStore>();
-    test::SceneBuilder builder;
-    std::unique_ptr<Backend> backend;
-    view::View view;
-    Rect whole{0, 0, 48, 32};
-};
 
 TEST_P(BackendContract, ReportsItsCapabilities) {
     const Capabilities capabilities = backend->capabilities();
@@ -138,65 +98,6 @@ TEST_P(BackendContract, AChannelHasTheSameBitsAloneAndAmongOthers) {
     }
 }
 
-TEST_P(BackendContract, TheChannelsOfASampleAreConsistent) {
-    using frame::Channel;
-    const FilmTile film = render(*backend, whole, {6, 0});
-    const auto value = [&](Channel channel, std::uint32_t component, std::size_t pixel) {
-        return film.plane(view.channels.first_plane(channel) + component)[pixel];
-    };
-    for (std::size_t pixel = 0; pixel < whole.pixel_count(); ++pixel) {
-        const bool hit = std::isfinite(value(Channel::Depth, 0, pixel));
-        ASSERT_EQ(value(Channel::Alpha, 0, pixel), hit ? 1.0f : 0.0f);
-        ASSERT_EQ(std::bit_cast<std::uint32_t>(value(Channel::ObjectIndex, 1, pixel)) != 0, hit);
-        ASSERT_EQ(value(Channel::FirstHalf, 3, pixel), 0.0f);
-        ASSERT_EQ(value(Channel::BlockVariance, 0, pixel), 0.0f);
-        for (std::uint32_t c = 0; c < 3; ++c) {
-            const float radiance = value(Channel::Radiance, c, pixel);
-            ASSERT_EQ(radiance,
-                      value(Channel::LowVariance, c, pixel) + value(Channel::HighVariance, c, pixel));
-            ASSERT_EQ(value(Channel::Color, c, pixel), radiance);
-            const double root = root_of(radiance);
-            ASSERT_NEAR(value(Channel::Root, c, pixel), root, 1e-6 * (2.0 + std::abs(root)));
-            ASSERT_GE(value(Channel::Headlight, c, pixel), 0.0f);
-            ASSERT_LE(value(Channel::Headlight, c, pixel), 1.0f);
-            if (!hit) {
-                ASSERT_EQ(value(Channel::Albedo, c, pixel), 0.0f);
-                ASSERT_EQ(value(Channel::Normal, c, pixel), 0.0f);
-            }
-        }
-    }
-    // The first half of a block is the block of its first half.
-    const FilmTile four = render(*backend, whole, {4, 2}), two = render(*backend, whole, {4, 1});
-    for (std::uint32_t c = 0; c < 3; ++c) {
-        const auto half = four.plane(view.channels.first_plane(Channel::FirstHalf) + c);
-        ASSERT_TRUE(std::ranges::equal(half, two.plane(view.channels.first_plane(Channel::Radiance) + c)));
-    }
-}
-
-TEST_P(BackendContract, RootHasTheMomentsOfTheTransformedSamples) {
-    using frame::Channel;
-    constexpr std::uint64_t Count = 8;
-    const FilmTile film = render(*backend, whole, {0, 3});
-    std::vector<FilmTile> samples;
-    for (std::uint64_t i = 0; i < Count; ++i) samples.push_back(render(*backend, whole, {i, 0}));
-    const std::uint32_t root = view.channels.first_plane(Channel::Root);
-    double variances = 0.0;
-    for (std::uint32_t c = 0; c < 3; ++c) {
-        for (std::size_t pixel = 0; pixel < whole.pixel_count(); ++pixel) {
-            double mean = 0.0, m2 = 0.0;
-            const auto transformed = [&](const FilmTile& one) {
-                return root_of(one.plane(view.channels.first_plane(Channel::Radiance) + c)[pixel]);
-            };
-            for (const FilmTile& one : samples) mean += transformed(one) / Count;
-            for (const FilmTile& one : samples) m2 += std::pow(transformed(one) - mean, 2);
-            ASSERT_NEAR(film.plane(root + c)[pixel], mean, 1e-6 * (2.0 + std::abs(mean)));
-            ASSERT_NEAR(film.plane(root + 3 + c)[pixel], m2, 1e-4 * (0.01 + m2));
-            variances += m2;
-        }
-    }
-    EXPECT_GT(variances, 0.0);
-}
-
 // Every view option renders whole blocks; options of light transport do not affect the geometry channels.
 TEST_P(BackendContract, TransportOptionsDoNotAffectTheGeometry) {
     const FilmTile plain = render(*backend, whole, {0, 2});
@@ -229,34 +130,6 @@ TEST_P(BackendContract, TransportOptionsDoNotAffectTheGeometry) {
     view = before;
     view.renderer = view::Renderer::Whitted;
     expect_same_geometry("renderer");
-}
-
-// Each sample for itself: it never adds light, does not change direct light, and a limit that nothing reaches
-// changes no bit.
-TEST_P(BackendContract, AClampLimitsIndirectLightAlone) {
-    const FilmTile free = render(*backend, whole, {0, 0});
-    view.clamp_indirect = 1e30f;
-    EXPECT_TRUE(frame::identical_bits(free, render(*backend, whole, {0, 0})));
-    view.clamp_indirect = 1e-3f;
-    const FilmTile clamped = render(*backend, whole, {0, 0});
-    const auto plane = [&](const FilmTile& film, frame::Channel channel, std::uint32_t c) {
-        return film.plane(view.channels.first_plane(channel) + c);
-    };
-    double before = 0.0, after = 0.0;
-    for (std::uint32_t c = 0; c < 3; ++c) {
-        for (std::size_t pixel = 0; pixel < whole.pixel_count(); ++pixel) {
-            ASSERT_EQ(plane(clamped, frame::Channel::LowVariance, c)[pixel],
-                      plane(free, frame::Channel::LowVariance, c)[pixel]);
-            const float most = plane(free, frame::Channel::HighVariance, c)[pixel],
-                        rest = plane(clamped, frame::Channel::HighVariance, c)[pixel];
-            ASSERT_LE(rest, most);
-            ASSERT_LE(rest, 0.1f) << "up to 2 contributions at each of 50 vertices";
-            before += most;
-            after += rest;
-        }
-    }
-    EXPECT_GT(after, 0.0);
-    EXPECT_LT(after, 0.5 * before);
 }
 
 // It renders with the renderers of its capabilities, and rejects others with the remedy.
@@ -429,13 +302,7 @@ TEST_P(BackendContract, AnEmptySceneRenders) {
     EXPECT_EQ(film.counts.at(0), 1u);
 }
 
-std::vector<std::string> names() {
-    std::vector<std::string> result;
-    for (const BackendEntry& entry : catalog()) result.push_back(entry.name);
-    return result;
-}
-
-INSTANTIATE_TEST_SUITE_P(Catalog, BackendContract, testing::ValuesIn(names()),
+INSTANTIATE_TEST_SUITE_P(Catalog, BackendContract, testing::ValuesIn(BackendContract::names()),
                          [](const auto& entry) { return entry.param; });
 
 TEST(Catalog, FindsByNameOrListsTheChoices) {

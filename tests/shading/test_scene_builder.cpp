@@ -363,8 +363,7 @@ std::vector<View> make_views(Generator& random) {
              .focus_distance = 2.0f,
              .containing_media = no_media(),
              .max_specular_events = 1u + i % 3u,
-             .clamp_indirect = i % 7u == 3u ? 0.5f : 0.0f,
-             .unused = 0u});
+             .clamp_indirect = i % 7u == 3u ? 0.5f : 0.0f});
     }
     return views;
 }

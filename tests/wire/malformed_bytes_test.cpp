@@ -176,6 +176,17 @@ TEST(MalformedBytes, ViewsOfChannelsThatCannotBeRenderedAreRefused) {
     EXPECT_NE(reason({Channel::Color, Channel::BlockVariance}).find("need radiance"), std::string::npos);
 }
 
+TEST(MalformedBytes, ViewsWithAClampThatIsNoLimitAreRefused) {
+    OpenView open{some_view()};
+    for (const float clamp :
+         {-1.0f, -std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
+        open.view.clamp_indirect = clamp;
+        const auto decoded = decode_control(encode(ControlMessage(open)));
+        ASSERT_FALSE(decoded) << clamp;
+        EXPECT_NE(std::string(decoded.error().what()).find("clamp_indirect"), std::string::npos);
+    }
+}
+
 // Film that would corrupt the frame does not decode.
 TEST(MalformedBytes, InvalidFilmIsRefused) {
     const auto refused = [](const std::function<void(FilmPart&)>& forge) {
