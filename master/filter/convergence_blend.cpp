@@ -33,7 +33,9 @@ enum Term : std::uint32_t {
 };
 constexpr std::array<std::uint32_t, 4> ForUnseen{Noise, Amplitude, Light, Variance};
 constexpr std::array<std::uint32_t, 2 + Bands> ForWeights{Noise, NoiseSquare, Square, Square + 1, Square + 2};
-constexpr Term PooledNoise = Amplitude;  // once the weights are known: S times the root of the sum of Noise
+// Once the weights are known: S times the relative deviation of the pixels around, at most S; the probability that light
+// is rare.
+constexpr Term PooledNoise = Amplitude, Rareness = Light;
 
 // The variance of each band where every pixel has independent noise of variance 1, from the sums of squares and of
 // products of the kernels.
@@ -211,7 +213,8 @@ struct UnseenRow {
 void find_unseen(const UnseenRow& row, std::size_t width, float area, float* __restrict unseen) {
     for (std::size_t x = 0; x < width; ++x) {
         const float finds = row.amplitude[x] * row.amplitude[x] / std::max(row.noise[x], 1e-37f);
-        const float few = exp_negative(-finds) * (1.0f + finds + 0.5f * finds * finds);
+        const float few =
+            exp_negative(-finds) * (1.0f + finds * (1.0f + finds * (1.0f / 2.0f + finds / 6.0f)));
         const float nearby = finds * (RareArea / area);
         const float rare = exp_negative(-nearby) * (1.0f + nearby);
         // 1e18 keeps the product below finite.
@@ -221,6 +224,17 @@ void find_unseen(const UnseenRow& row, std::size_t width, float area, float* __r
         const float common = std::clamp(expected / CommonFinds - 1.0f, 0.0f, 1.0f);
         const bool is_dark = row.own_noise[x] * area < UnseenShare * row.noise[x];
         unseen[x] = is_dark ? std::max(std::max(few, rare * missed), common) : 0.0f;
+    }
+}
+
+// The probability that RareArea pixels of a square have at most one find, by the noise and its squares.
+void find_rareness(const float* noise, const float* square, std::size_t width, float area,
+                   float* __restrict rareness) {
+    for (std::size_t x = 0; x < width; ++x) {
+        const float ratio = noise[x] / std::sqrt(std::max(square[x], 1e-37f));  // squares may be infinite
+        const float finds = std::min(ratio * ratio, area);
+        const float nearby = finds * (RareArea / area);
+        rareness[x] = exp_negative(-nearby) * (1.0f + nearby);
     }
 }
 
@@ -287,6 +301,7 @@ bool ConvergenceBlend::weigh(const Inputs& inputs, frame::Channel filtered_part,
     const std::size_t width = inputs.width;
     scratch_.reserve(context, SquareSums::size(width, radius_, ForWeights.size()) + 2 * width + 6);
     const std::uint32_t blocks = SquareSums::block_count(inputs.height);
+    const float side = 2.0f * static_cast<float>(radius_) + 1.0f, area = side * side;
     return for_rows(context, inputs.height,
                     [&](std::uint32_t y) {
                         fill_residual(inputs, filtered_part, filtered, self_weight, floor, y, residual_,
@@ -300,7 +315,9 @@ bool ConvergenceBlend::weigh(const Inputs& inputs, frame::Channel filtered_part,
                    float* noise = terms_.row(PooledNoise, sums.first_row() + i);
                    const Scale scale(filtered, Grey, sums.first_row() + i, floor);
                    for (std::size_t x = 0; x < width; ++x)
-                       noise[x] = std::sqrt(sums.row(0, i)[x]) * scale.at(x);
+                       noise[x] = std::min(std::sqrt(sums.row(0, i)[x] / area), 1.0f) * scale.at(x);
+                   find_rareness(sums.row(0, i), sums.row(1, i), width, area,
+                                 terms_.row(Rareness, sums.first_row() + i));
                    for (std::uint32_t band = 0; band < Bands; ++band) {
                        divide(sums.row(0, i), sums.row(1, i), sums.row(2 + band, i), width, NoiseGain[band],
                               weights_.row(band, sums.first_row() + i));
@@ -336,18 +353,23 @@ bool ConvergenceBlend::apply(const Inputs& inputs, frame::Channel filtered_part,
     if (!weigh(inputs, filtered_part, self_weight, picture, floor, context)) return false;
     const bool done = for_rows(context, inputs.height, [&](std::uint32_t y) {
         const float *fine = weights_.row(0, y), *middle = weights_.row(1, y), *coarse = weights_.row(2, y);
+        const float* rareness = terms_.row(Rareness, y);
         const float* counts = inputs.counts.row(0, y);
         // Alpha, which is scaled by the light, first.
         for (std::uint32_t c = picture.components(); c-- > 0;) {
             const BandRow row = bands_of(relative_, narrow_, wide_, picture, floor, c, y);
             float* f = picture.row(c, y);
+            const float* u = inputs.color(c).data() + std::size_t{y} * inputs.width;
             const float most = c == 3 ? 1.0f : std::numeric_limits<float>::max();
             for (std::uint32_t x = 0; x < inputs.width; ++x) {
                 const std::array<float, Bands> d = row.at(x);
                 const float change =
                     (1.0f - fine[x]) * d[0] + (1.0f - middle[x]) * d[1] + (1.0f - coarse[x]) * d[2];
+                // Where light is rare, the coarse bands take it to pixels that found none.
+                const float beyond = std::max(0.0f, f[x] + change - std::max(f[x], u[x]));
+                const float blended = f[x] + change - rareness[x] * beyond;
                 // What lies in a range is never further from its nearest value than from one outside.
-                f[x] = counts[x] >= 2.0f ? std::clamp(f[x] + change, 0.0f, most) : f[x];
+                f[x] = counts[x] >= 2.0f ? std::clamp(blended, 0.0f, most) : f[x];
             }
         }
     });

@@ -149,7 +149,7 @@ TEST(ConvergenceBlend, DoesNotKeepRareLightAsSpots) {
         const double unfiltered = error_against(inputs.mean(Channel::Radiance), truth);
         const Planes out = blended(inputs, truth);
         // At 4 samples a square contains nine finds: are the pixels around them dark?
-        EXPECT_LT(error_against(out, truth), (n == 4 ? 0.05 : 0.02) * unfiltered) << n;
+        EXPECT_LT(error_against(out, truth), (n == 4 ? 0.055 : 0.02) * unfiltered) << n;
         EXPECT_NEAR(mean(out), 1.0, 0.02) << n;  // and none of it is lost
     }
 }

@@ -186,7 +186,8 @@ TEST(Separable, IsFiveTimesFasterThanBruteForce) {
         method.filter->run(inputs, method.choice.values, method.out, {arena, {}});
         return tessera::test::thread_cpu_seconds() - start;
     };
-    Method brute = make("pixel:method=brute,adaptive=off"), separable = make("pixel:adaptive=off");
+    Method brute = make("pixel:method=brute,adaptive=off,blend=off"),
+           separable = make("pixel:adaptive=off,blend=off");
     double shortest_brute = 1e9, shortest_separable = 1e9;
     for (int i = 0; i < 25; ++i) {
         shortest_brute = std::min(shortest_brute, seconds_of(brute));
