@@ -1,4 +1,4 @@
-// What consistent denoisers promise, over all bench scenes, eight seeds and 4 to 4096 samples: about an hour. What is known
+// What consistent denoisers promise, over all bench scenes, eight seeds and 4 to 4096 samples: about two hours. What is known
 // not to be kept is listed, so that anything else is found.
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -145,7 +145,7 @@ Command consistency_command(cli::CommandLine& bench) {
         "light "
         "that they keep, and specks. A star marks numbers of samples at which more than 1 % of the light is "
         "too rare to be known from accidents. What a consistent denoiser does not keep is listed at the end. "
-        "The defaults take about half an hour on two cores.");
+        "The defaults take about two hours on two cores.");
     line.option("--scenes", "a,b: built-in scenes or scene files (default: all)", options->scenes);
     line.option("--filters", "a,b:key=value: filters (default: all consistent ones)", options->filters);
     line.option("--spp", "samples per pixel to measure at", options->spp);
