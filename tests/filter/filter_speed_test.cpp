@@ -121,7 +121,7 @@ TEST(PsvgfSpeed, IsLinearInThePixels) {  // DT28
     auto subjects = of_four_sizes("psvgf:blend=off", [](std::uint32_t width, std::uint32_t height) {
         return psvgf_frames(width, height, Camera::Moving);
     });
-    measure(subjects, 5);
+    measure(subjects, 20);
     expect_linear(subjects, 0.6);  // a small picture stays in the cache from stage to stage
 }
 
@@ -185,7 +185,7 @@ TEST(FdfSpeed, IsLinearInThePixels) {  // LT22
             return shadowed_texture(width, height, x, y, i);
         })};
     });
-    measure(subjects, 4);
+    measure(subjects, 16);
     expect_linear(subjects, 0.2);
 }
 
