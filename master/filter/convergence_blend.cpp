@@ -208,15 +208,20 @@ struct UnseenRow {
     const float *noise, *amplitude, *light, *variance;
 };
 
+// Of a Poisson distribution with this mean.
+float at_most_one(float mean) {
+    return exp_negative(-mean) * (1.0f + mean);
+}
+float at_most_three(float mean) {
+    return exp_negative(-mean) * (1.0f + mean * (1.0f + mean * (1.0f / 2.0f + mean / 6.0f)));
+}
+
 // Of the pixels of one row that have seen next to nothing of the light that makes the noise around them: the
 // probability that the light of F is not there. 0 elsewhere. `area`: pixels of a square.
 void find_unseen(const UnseenRow& row, std::size_t width, float area, float* __restrict unseen) {
     for (std::size_t x = 0; x < width; ++x) {
         const float finds = row.amplitude[x] * row.amplitude[x] / std::max(row.noise[x], 1e-37f);
-        const float few =
-            exp_negative(-finds) * (1.0f + finds * (1.0f + finds * (1.0f / 2.0f + finds / 6.0f)));
-        const float nearby = finds * (RareArea / area);
-        const float rare = exp_negative(-nearby) * (1.0f + nearby);
+        const float few = at_most_three(finds), rare = at_most_one(finds * (RareArea / area));
         // 1e18 keeps the product below finite.
         const float per_light = std::min(row.light[x] / std::max(row.variance[x], 1e-37f), 1e18f);
         const float expected = std::min(row.own_light[x] * per_light, MostExpected);
@@ -233,8 +238,7 @@ void find_rareness(const float* noise, const float* square, std::size_t width, f
     for (std::size_t x = 0; x < width; ++x) {
         const float ratio = noise[x] / std::sqrt(std::max(square[x], 1e-37f));  // squares may be infinite
         const float finds = std::min(ratio * ratio, area);
-        const float nearby = finds * (RareArea / area);
-        rareness[x] = exp_negative(-nearby) * (1.0f + nearby);
+        rareness[x] = at_most_one(finds * (RareArea / area));
     }
 }
 

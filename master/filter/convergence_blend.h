@@ -95,7 +95,7 @@ class ConvergenceBlend {
     const Planes& weights() const { return weights_; }
 
     // Memory traffic of apply().
-    static double bytes_per_pixel(std::uint32_t components) { return 360.0 + 60.0 * components; }
+    static double bytes_per_pixel(std::uint32_t components) { return 368.0 + 64.0 * components; }
 
   private:
     bool weigh(const Inputs& inputs, frame::Channel filtered_part, std::span<const float> self_weight,

@@ -149,7 +149,7 @@ TEST(ConvergenceBlend, DoesNotKeepRareLightAsSpots) {
         const double unfiltered = error_against(inputs.mean(Channel::Radiance), truth);
         const Planes out = blended(inputs, truth);
         // At 4 samples a square contains nine finds: are the pixels around them dark?
-        EXPECT_LT(error_against(out, truth), (n == 4 ? 0.055 : 0.02) * unfiltered) << n;
+        EXPECT_LT(error_against(out, truth), (n == 4 ? 0.05 : 0.02) * unfiltered) << n;
         EXPECT_NEAR(mean(out), 1.0, 0.02) << n;  // and none of it is lost
     }
 }
@@ -186,6 +186,20 @@ TEST(ConvergenceBlend, DoesNotBrightenTheDarkWithRareLight) {
 }
 
 // Every other column is in shadow, which each sample sees; the noise of the lit ones is not rare light.
+// A single find of a hundred times the light, which the denoiser spread: its neighbours found nothing.
+TEST(ConvergenceBlend, KeepsASingleFindOutOfItsNeighbours) {
+    Inputs inputs = noisy(uniform(0.0f), 4);
+    Planes filtered = uniform(0.01f);
+    const std::size_t at = 40 * FadeWidth + 40;
+    for (std::uint32_t c = 0; c < 3; ++c) {
+        inputs.means[0].plane(c)[at] = 1.0f;
+        inputs.variances[0].plane(c)[at] = 1.0f;
+    }
+    const Planes out = blended(inputs, filtered);
+    for (const std::size_t neighbour : {at - 1, at + 1, at - FadeWidth, at + FadeWidth, at + FadeWidth + 1})
+        EXPECT_LT(out.plane(0)[neighbour], 0.012f);
+}
+
 TEST(ConvergenceBlend, DoesNotFillFineShadows) {
     Planes truth = uniform(0.1f);
     Inputs inputs = noisy(uniform(0.5f), 64);
