@@ -278,7 +278,7 @@ void RenderMaster::bulk(net::Message& message, TimePoint now) {
             return service_.absent(*session, *absent, now);
         }
         if (const auto* request = std::get_if<wire::BlobRequest>(&*decoded)) {
-            // Clients have eight requests under way, and repeat those that are not answered.
+            // Clients have 32 requests under way, and repeat those that are not answered.
             constexpr std::size_t MaxWaiting = std::size_t{64} << 20;
             if (outbox_.waiting_bytes(net::Link::Bulk, message.peer) > MaxWaiting)
                 return drop(message, "it asks for blobs faster than it receives them");

@@ -4,12 +4,6 @@
 
 namespace tessera::wire {
 
-namespace {
-
-constexpr std::uint64_t ChunkBytes = std::uint64_t{1} << 20;
-
-}  // namespace
-
 Expected<void> BlobFetcher::want(const scene::BlobRef& blob) {
     if (blob.empty() || store_->find(blob.hash)) return {};
     if (const auto known = partial_.find(blob.hash); known != partial_.end()) {
@@ -43,14 +37,14 @@ std::vector<BlobRequest> BlobFetcher::due(TimePoint now) {
         }
         in_flight += static_cast<std::uint32_t>(
             (partial.requested - std::min<std::uint64_t>(partial.requested, partial.data.size()) +
-             ChunkBytes - 1) /
-            ChunkBytes);
+             BlobChunkBytes - 1) /
+            BlobChunkBytes);
     }
     for (auto& [hash, partial] : partial_) {
         if (partial.absent) continue;
         for (; partial.requested < partial.total && in_flight < limits_.requests_in_flight; ++in_flight) {
             requests.push_back({hash, partial.requested});
-            partial.requested = std::min(partial.total, partial.requested + ChunkBytes);
+            partial.requested = std::min(partial.total, partial.requested + BlobChunkBytes);
             partial.last_activity = now;
         }
     }
@@ -126,7 +120,7 @@ BulkMessage answer(const BlobRequest& request, const scene::BlobStore& store) {
     const scene::BlobPtr blob = store.find(request.hash);
     if (!blob || request.offset > blob->bytes().size()) return BlobAbsent{request.hash};
     const auto range = blob->bytes().subspan(request.offset);
-    const auto data = range.first(std::min<std::size_t>(range.size(), ChunkBytes));
+    const auto data = range.first(std::min<std::size_t>(range.size(), BlobChunkBytes));
     return BlobChunk{request.hash, blob->bytes().size(), request.offset, {data.begin(), data.end()}};
 }
 

@@ -10,14 +10,18 @@
 #include "mediator/scene/blob.h"
 #include "mediator/wire/messages.h"
 
-// Blobs are pulled: the receiver requests a byte range, the sender answers with chunks of 1 MiB, so an interrupted
+// Blobs are pulled: the receiver requests a byte range, the sender answers with a chunk, so an interrupted
 // transfer can resume. Pure state, no sockets.
 namespace tessera::wire {
+
+// Small, because the event loop of the master serves nothing else while it hashes and stores one: fresh memory may cost
+// three times the time of the hash.
+inline constexpr std::uint64_t BlobChunkBytes = std::uint64_t{256} << 10;
 
 struct BlobLimits {
     std::uint64_t bytes_per_blob = 4ull << 30;
     std::uint64_t bytes_total = 16ull << 30;  // under way from a peer at a time; held for a key
-    std::uint32_t requests_in_flight = 8;     // requested chunks that have not arrived
+    std::uint32_t requests_in_flight = 32;    // requested chunks that have not arrived
     Duration retry_after = std::chrono::seconds(3);
 };
 

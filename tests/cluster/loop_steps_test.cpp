@@ -11,6 +11,7 @@
 
 #include "mediator/scene/blob_file.h"
 #include "mediator/scene/fields.h"
+#include "mediator/wire/blob_transfer.h"
 #include "tests/cluster/cluster_scene.h"
 #include "tests/cluster/loopback_cluster.h"
 #include "tests/cluster/raw_peer.h"
@@ -135,7 +136,7 @@ TEST_F(LoopSteps, AreShortWhileALargeSceneIsReadMirroredAndClosed) {
     for (RawPeer& reader : readers) {
         const BlobRef content = reader.received<wire::SceneContent>()->blob;
         EXPECT_GT(content.byte_size, 300'000u * 10);
-        for (std::uint64_t at = 0; at < content.byte_size; at += std::uint64_t{1} << 20)
+        for (std::uint64_t at = 0; at < content.byte_size; at += wire::BlobChunkBytes)
             reader.send(wire::BulkMessage(wire::BlobRequest{content.hash, at}));
     }
     EXPECT_TRUE(all_have<wire::BlobChunk>(readers));

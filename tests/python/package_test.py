@@ -12,7 +12,7 @@ from array import array
 
 import tessera
 from tessera import bulk, endpoint, keys
-from tessera.blobs import BlobHeap, Fetch, answer, digest
+from tessera.blobs import CHUNK_BYTES, BlobHeap, Fetch, answer, digest
 from tessera.camera import frustum, multiply, rigid
 from tessera.fields import KINDS, raw_array
 from tessera.film import CHANNELS, FilmTile, Rule, plane_count
@@ -220,7 +220,7 @@ class Bulk(unittest.TestCase):
             self.assertTrue(requests)
             for request in requests:
                 chunk = answer(request, data)
-                self.assertLessEqual(len(chunk.data), 1 << 20)
+                self.assertLessEqual(len(chunk.data), CHUNK_BYTES)
                 fetch.receive(chunk, 0.0)
         self.assertEqual(bytes(fetch.data), data)
         bad = Fetch(tessera.Blob(digest(b"good"), 4))

@@ -1,4 +1,4 @@
-"""Blobs: immutable bytes named by their BLAKE2b-256. Served to the master on request, fetched in chunks of 1 MiB."""
+"""Blobs: immutable bytes named by their BLAKE2b-256. Served to the master on request, fetched in chunks."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from . import bulk
 from .errors import Malformed
 from .values import Blob
 
-IN_FLIGHT = 8  # chunks requested and not yet received
+CHUNK_BYTES = 256 << 10  # that the master serves before it turns to others
+IN_FLIGHT = 32  # chunks requested and not yet received
 RETRY_SECONDS = 3.0
 
 
@@ -42,7 +43,7 @@ def answer(request: bulk.BlobRequest, data: bytes | None) -> bulk.BulkMessage:
     """The reply to a request: the requested range, or that the blob is absent."""
     if data is None or request.offset > len(data):
         return bulk.BlobAbsent(request.hash)
-    piece = data[request.offset:request.offset + bulk.MAX_CHUNK]
+    piece = data[request.offset:request.offset + CHUNK_BYTES]
     return bulk.BlobChunk(request.hash, len(data), request.offset, piece)
 
 
@@ -67,9 +68,9 @@ class Fetch:
         if self.requested > len(self.data) and now - self.last_activity > RETRY_SECONDS:
             self.requested = len(self.data)
         requests = []
-        while self.requested < min(self.blob.byte_size, len(self.data) + IN_FLIGHT * bulk.MAX_CHUNK):
+        while self.requested < min(self.blob.byte_size, len(self.data) + IN_FLIGHT * CHUNK_BYTES):
             requests.append(bulk.BlobRequest(self.blob.hash, self.requested))
-            self.requested = min(self.blob.byte_size, self.requested + bulk.MAX_CHUNK)
+            self.requested = min(self.blob.byte_size, self.requested + CHUNK_BYTES)
             self.last_activity = now
         return requests
 
