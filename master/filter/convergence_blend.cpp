@@ -20,6 +20,17 @@ constexpr float Most = 1e15f, Largest = 1e37f;
 
 constexpr std::size_t Bands = ConvergenceBlend::Bands;
 
+// As std::min, std::max and std::clamp, which return references: loops with those are not vectorised.
+float smaller(float a, float b) {
+    return b < a ? b : a;
+}
+float larger(float a, float b) {
+    return a < b ? b : a;
+}
+float limited(float x, float low, float high) {
+    return smaller(larger(x, low), high);
+}
+
 // Per pixel, summed over r, g, b: relative to F the variance of U - F, its square and its root, and the squares of the
 // bands; |F| and the variance of U in units of the floor.
 enum Term : std::uint32_t {
@@ -50,18 +61,19 @@ constexpr std::array<float, Bands> NoiseGain{static_cast<float>(1.0 - 2.0 * Own 
 
 // What differences are divided by: light by its own brightness, alpha by that of the light, whose weights it has.
 struct Scale {
-    Scale(const Planes& filtered, std::uint32_t component, std::uint32_t y, float floor) : floor_(floor) {
-        for (std::uint32_t c = 0; c < 3; ++c) light_[c] = filtered.row(component < 3 ? component : c, y);
-    }
+    Scale(const Planes& filtered, std::uint32_t component, std::uint32_t y, float floor)
+        : r_(filtered.row(component < 3 ? component : 0, y)),
+          g_(filtered.row(component < 3 ? component : 1, y)),
+          b_(filtered.row(component < 3 ? component : 2, y)),
+          floor_(floor) {}
     float at(std::size_t x) const {
         constexpr float Third = 1.0f / 3.0f;
-        const float mean =
-            Third * std::abs(light_[0][x]) + Third * std::abs(light_[1][x]) + Third * std::abs(light_[2][x]);
-        return std::min(mean + floor_, 3e38f);
+        const float mean = Third * std::abs(r_[x]) + Third * std::abs(g_[x]) + Third * std::abs(b_[x]);
+        return smaller(mean + floor_, 3e38f);
     }
 
   private:
-    std::array<const float*, 3> light_;
+    const float *r_, *g_, *b_;
     float floor_;
 };
 
@@ -76,10 +88,12 @@ void fill_residual(const Inputs& inputs, frame::Channel filtered_part, const Pla
         const float* f = filtered.row(c, y);
         const Scale scale(filtered, c, y, floor);
         float *to = residual.row(c, y), *relative_to = relative.row(c, y);
+#pragma GCC ivdep  // rows of different planes; too many pointers for a check at run time
         for (std::uint32_t x = 0; x < width; ++x) {
-            const float difference = counts[x] >= 2.0f ? std::clamp(u[x] - f[x], -Largest, Largest) : 0.0f;
+            const float any = limited(u[x] - f[x], -Largest, Largest);
+            const float difference = counts[x] >= 2.0f ? any : 0.0f;
             to[x] = difference;
-            relative_to[x] = std::clamp(difference / scale.at(x), -Most, Most);
+            relative_to[x] = limited(difference / scale.at(x), -Most, Most);
         }
     }
     float *noise = terms.row(Noise, y), *light = terms.row(Light, y), *variance = terms.row(Variance, y);
@@ -88,13 +102,14 @@ void fill_residual(const Inputs& inputs, frame::Channel filtered_part, const Pla
     for (std::uint32_t c = 0; c < 3; ++c) {
         const float* v = inputs.variance(filtered_part).row(c, y);
         const float* f = filtered.row(c, y);
+#pragma GCC ivdep  // as above
         for (std::uint32_t x = 0; x < width; ++x) {
             const float known = counts[x] >= 2.0f ? 1.0f : 0.0f;
             const float error = std::sqrt(v[x]) * known;
-            const float deviation = std::min(error / (std::abs(f[x]) + floor), Most);
-            const float in_floors = std::min(error * per_floor, Most);
+            const float deviation = smaller(error / (std::abs(f[x]) + floor), Most);
+            const float in_floors = smaller(error * per_floor, Most);
             noise[x] += deviation * deviation;
-            light[x] += std::min(std::abs(f[x]) * per_floor, Most) * known;
+            light[x] += smaller(std::abs(f[x]) * per_floor, Most) * known;
             variance[x] += in_floors * in_floors;
         }
     }
@@ -120,18 +135,26 @@ void smooth_row(const Planes& from, std::uint32_t c, std::uint32_t y, const std:
     constexpr std::uint32_t Radius = Size - 1;
     const std::uint32_t width = from.width(), last = from.height() - 1;
     float* __restrict sum = column + Radius;
-    const float* here = from.row(c, y);
-    for (std::uint32_t x = 0; x < width; ++x) sum[x] = kernel[Radius] * here[x];
-    for (std::uint32_t d = 1; d <= Radius; ++d) {
-        const float *above = from.row(c, y > d ? y - d : 0), *below = from.row(c, std::min(last, y + d));
-        for (std::uint32_t x = 0; x < width; ++x) sum[x] += kernel[Radius - d] * (above[x] + below[x]);
+    std::array<const float*, Size> above, below;
+    for (std::uint32_t d = 0; d <= Radius; ++d) {
+        above[d] = from.row(c, y > d ? y - d : 0);
+        below[d] = from.row(c, std::min(last, y + d));
+    }
+#pragma GCC ivdep  // scratch; too many pointers for a check at run time
+    for (std::uint32_t x = 0; x < width; ++x) {
+        float value = kernel[Radius] * above[0][x];
+#pragma GCC unroll 4
+        for (std::uint32_t d = 1; d <= Radius; ++d) value += kernel[Radius - d] * (above[d][x] + below[d][x]);
+        sum[x] = value;
     }
     std::fill(column, sum, sum[0]);
     std::fill(sum + width, sum + width + Radius, sum[width - 1]);
-    for (std::uint32_t x = 0; x < width; ++x) to[x] = kernel[Radius] * sum[x];
-    for (std::uint32_t d = 1; d <= Radius; ++d) {
-        const float *left = column + Radius - d, *right = column + Radius + d;
-        for (std::uint32_t x = 0; x < width; ++x) to[x] += kernel[Radius - d] * (left[x] + right[x]);
+    for (std::uint32_t x = 0; x < width; ++x) {
+        float value = kernel[Radius] * sum[x];
+#pragma GCC unroll 4
+        for (std::uint32_t d = 1; d <= Radius; ++d)
+            value += kernel[Radius - d] * (column[x + Radius - d] + column[x + Radius + d]);
+        to[x] = value;
     }
 }
 
@@ -247,10 +270,13 @@ struct BandRow {
     const float *relative, *narrow, *wide;
     Scale scale;
 
-    std::array<float, Bands> at(std::size_t x) const {
+    struct Values {
+        float fine, middle, coarse;
+    };
+    Values at(std::size_t x) const {
         const float s = scale.at(x);
-        const float coarser = std::clamp(narrow[x] * s, -Largest, Largest);
-        return {std::clamp((relative[x] - narrow[x]) * s, -Largest, Largest), coarser - wide[x], wide[x]};
+        const float coarser = limited(narrow[x] * s, -Largest, Largest);
+        return {limited((relative[x] - narrow[x]) * s, -Largest, Largest), coarser - wide[x], wide[x]};
     }
 };
 
@@ -260,24 +286,25 @@ BandRow bands_of(const Planes& relative, const Planes& narrow, const Planes& wid
 }
 
 // The relative squares of the bands in one row.
-void fill_squares(const BandRow& row, const float* unseen, std::uint32_t y, Planes& terms) {
+void fill_squares(BandRow row, const float* unseen, std::uint32_t y, Planes& terms) {
     const std::uint32_t width = terms.width();
     float *fine = terms.row(Square, y), *middle = terms.row(Square + 1, y),
           *coarse = terms.row(Square + 2, y);
+#pragma GCC ivdep  // rows of different planes; too many pointers for a check at run time
     for (std::uint32_t x = 0; x < width; ++x) {
         // U + floor is (F + floor) (1 + residual).
-        const float darker = std::max(1.0f + row.relative[x], LeastDarker);
+        const float darker = larger(1.0f + row.relative[x], LeastDarker);
         const float raised = row.relative[x] < 0.0f ? 1.0f / darker : 1.0f;
         const float factor = 1.0f + unseen[x] * (raised * raised - 1.0f);
         const float inverse = 1.0f / row.scale.at(x);
-        const std::array<float, Bands> bands = row.at(x);
-        const auto square = [&](float d) {
-            const float relative = std::clamp(d * inverse, -Most, Most);
+        const BandRow::Values bands = row.at(x);
+        const auto square = [inverse, factor](float d) {
+            const float relative = limited(d * inverse, -Most, Most);
             return relative * relative * factor;
         };
-        fine[x] += square(bands[0]);
-        middle[x] += square(bands[1]);
-        coarse[x] += square(bands[2]);
+        fine[x] += square(bands.fine);
+        middle[x] += square(bands.middle);
+        coarse[x] += square(bands.coarse);
     }
 }
 
@@ -365,15 +392,16 @@ bool ConvergenceBlend::apply(const Inputs& inputs, frame::Channel filtered_part,
             float* f = picture.row(c, y);
             const float* u = inputs.color(c).data() + std::size_t{y} * inputs.width;
             const float most = c == 3 ? 1.0f : std::numeric_limits<float>::max();
+#pragma GCC ivdep  // a pixel depends on no other
             for (std::uint32_t x = 0; x < inputs.width; ++x) {
-                const std::array<float, Bands> d = row.at(x);
-                const float change =
-                    (1.0f - fine[x]) * d[0] + (1.0f - middle[x]) * d[1] + (1.0f - coarse[x]) * d[2];
+                const BandRow::Values d = row.at(x);
+                const float change = (1.0f - fine[x]) * d.fine + (1.0f - middle[x]) * d.middle +
+                                     (1.0f - coarse[x]) * d.coarse;
                 // Where light is rare, the coarse bands take it to pixels that found none.
-                const float beyond = std::max(0.0f, f[x] + change - std::max(f[x], u[x]));
+                const float beyond = larger(0.0f, f[x] + change - larger(f[x], u[x]));
                 const float blended = f[x] + change - rareness[x] * beyond;
                 // What lies in a range is never further from its nearest value than from one outside.
-                f[x] = counts[x] >= 2.0f ? std::clamp(blended, 0.0f, most) : f[x];
+                f[x] = counts[x] >= 2.0f ? limited(blended, 0.0f, most) : f[x];
             }
         }
     });
