@@ -395,8 +395,8 @@ bool ConvergenceBlend::apply(const Inputs& inputs, frame::Channel filtered_part,
 #pragma GCC ivdep  // a pixel depends on no other
             for (std::uint32_t x = 0; x < inputs.width; ++x) {
                 const BandRow::Values d = row.at(x);
-                const float change = (1.0f - fine[x]) * d.fine + (1.0f - middle[x]) * d.middle +
-                                     (1.0f - coarse[x]) * d.coarse;
+                const float change =
+                    (1.0f - fine[x]) * d.fine + (1.0f - middle[x]) * d.middle + (1.0f - coarse[x]) * d.coarse;
                 // Where light is rare, the coarse bands take it to pixels that found none.
                 const float beyond = larger(0.0f, f[x] + change - larger(f[x], u[x]));
                 const float blended = f[x] + change - rareness[x] * beyond;
