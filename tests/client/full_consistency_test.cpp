@@ -29,9 +29,9 @@ const std::vector<std::string> Known{
     "grids, psvgf, 256 spp: ",          "grids, nfor, 64 spp: ",
 };
 
-// In every scene so far: a denoiser gains most where there are few samples. What it gains shrinks with their number, so its
-// error falls more slowly from 256 to 4096, although it is the smaller one at each of them (in room-1, over the samples' own:
-// 0.72 times as fast for fdf, 0.75 statmc, 0.76 nfor, 0.79 psvgf, 0.92 pixel). A bias that stayed would break the cells.
+// A denoiser gains most where there are few samples. What it gains shrinks with their number, so its error falls more slowly
+// from 256 to 4096 samples, although it is the smaller one at both (in room-1, over the samples' own: 0.72 times as fast for
+// fdf, 0.75 statmc, 0.76 nfor, 0.79 psvgf, 0.92 pixel). A bias that stayed would break the cells.
 constexpr std::string_view KnownEverywhere = ": the error falls";
 
 TEST(FullConsistency, EveryPromiseIsKeptButKnownOnes) {
