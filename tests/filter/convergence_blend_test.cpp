@@ -185,7 +185,6 @@ TEST(ConvergenceBlend, DoesNotBrightenTheDarkWithRareLight) {
     EXPECT_TRUE(spread);
 }
 
-// Every other column is in shadow, which each sample sees; the noise of the lit ones is not rare light.
 // One strong find among weak ones, all of which the denoiser spread: its neighbours found nothing.
 TEST(ConvergenceBlend, KeepsASingleFindOutOfItsNeighbours) {
     Inputs inputs = noisy(uniform(0.05f), 4, 2.0f);
@@ -202,6 +201,7 @@ TEST(ConvergenceBlend, KeepsASingleFindOutOfItsNeighbours) {
         EXPECT_LT(out.plane(0)[neighbour], 0.13f);  // 0.23 without the limit
 }
 
+// Every other column is in shadow, which each sample sees; the noise of the lit ones is not rare light.
 TEST(ConvergenceBlend, DoesNotFillFineShadows) {
     Planes truth = uniform(0.1f);
     Inputs inputs = noisy(uniform(0.5f), 64);
