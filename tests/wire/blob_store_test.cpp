@@ -60,6 +60,33 @@ TEST(BlobFetcherTest, HoldsCompletedBlobsAndGivesTheirBytesBack) {
     EXPECT_EQ(store->erase_unused({}, store->mark()).size(), 1u);
 }
 
+// Each byte crosses the network once, in small chunks, of which a limited number is under way.
+TEST(BlobFetcherTest, FetchesALargeBlobInSmallChunks) {
+    scene::BlobStore sender;
+    const auto store = std::make_shared<scene::BlobStore>();
+    const std::size_t size = 40 * BlobChunkBytes + 5;
+    const scene::BlobPtr blob = sender.insert(bytes(size, 7));
+    BlobFetcher fetcher(store, {});
+    const Hash256 hash = blake2b(blob->bytes());
+    ASSERT_TRUE(fetcher.want({hash, size}));
+    std::size_t chunks = 0;
+    while (!fetcher.idle()) {
+        const std::vector<BlobRequest> requests = fetcher.due({});
+        ASSERT_FALSE(requests.empty());
+        EXPECT_LE(requests.size(), 32u);
+        for (const BlobRequest& request : requests) {
+            auto answered = answer(request, sender);
+            auto& chunk = std::get<BlobChunk>(answered);
+            EXPECT_LE(chunk.data.size(), std::size_t{256} << 10) << "a long step of the master's event loop";
+            ASSERT_TRUE(fetcher.receive(std::move(chunk), {}));
+            ++chunks;
+        }
+    }
+    EXPECT_EQ(chunks, 41u);
+    EXPECT_EQ(fetcher.received_bytes(), size);
+    EXPECT_NE(store->find(hash), nullptr);
+}
+
 TEST(BlobFetcherTest, AWrongHashStartsAgain) {
     const auto store = std::make_shared<scene::BlobStore>();
     BlobFetcher fetcher(store, {});
