@@ -21,11 +21,12 @@ std::vector<FilmTile> BlockStack::take() {
     return std::exchange(blocks_, {});
 }
 
-FilmTile BlockStack::recycled(Rect rect, SampleBlock block, ChannelSet channels) {
-    if (spare_.empty()) return FilmTile(rect, block, channels);
+FilmTile BlockStack::recycled(Rect rect, SampleBlock block, ChannelSet channels, const PixelSet& pixels) {
+    if (spare_.empty()) return FilmTile(rect, block, channels, pixels);
     FilmTile tile = std::move(spare_.back());
     spare_.pop_back();
-    if (tile.rect != rect || tile.channels != channels) return FilmTile(rect, block, channels);
+    if (tile.rect != rect || tile.channels != channels || tile.pixels != pixels)
+        return FilmTile(rect, block, channels, pixels);
     tile.reset(block);
     return tile;
 }

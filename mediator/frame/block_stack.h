@@ -12,8 +12,8 @@ class BlockStack {
   public:
     void push(FilmTile block);
     std::vector<FilmTile> take();  // ascending; leaves the stack empty
-    FilmTile recycled(Rect rect, SampleBlock block,
-                      ChannelSet channels);  // a tile without samples, in reused memory
+    // A tile without samples, in reused memory.
+    FilmTile recycled(Rect rect, SampleBlock block, ChannelSet channels, const PixelSet& pixels = {});
 
   private:
     std::vector<FilmTile> blocks_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 namespace tessera::frame {
 
@@ -42,14 +43,36 @@ void copy_rows(std::span<const T> from, const Rect& tile, std::span<T> to, const
     }
 }
 
+// The same for some pixels of the tile.
+template <class T>
+void copy_pixels(std::span<const T> from, const PixelSet& pixels, const Rect& tile, std::span<T> to,
+                 const Rect& window) {
+    const auto tile_width = static_cast<std::uint32_t>(tile.width),
+               width = static_cast<std::uint32_t>(window.width);
+    const auto corner =
+        static_cast<std::size_t>(tile.y - window.y) * width + static_cast<std::size_t>(tile.x - window.x);
+    std::size_t next = 0;
+    for (const std::uint32_t index : pixels.indices()) {
+        const std::size_t at = corner + std::size_t{index / tile_width} * width + index % tile_width;
+        std::memcpy(&to[at], &from[next++], sizeof(T));  // bits: a payload may look like a signalling NaN
+    }
+}
+
+template <class T>
+void copy(std::span<const T> from, const FilmTile& tile, std::span<T> to, const Rect& window) {
+    tile.pixels.is_all() ? copy_rows(from, tile.rect, to, window)
+                         : copy_pixels(from, tile.pixels, tile.rect, to, window);
+}
+
 }  // namespace
 
-FilmTile::FilmTile(Rect tile_rect, SampleBlock sample_block, ChannelSet channel_set)
+FilmTile::FilmTile(Rect tile_rect, SampleBlock sample_block, ChannelSet channel_set, PixelSet pixel_set)
     : rect(tile_rect),
       block(sample_block),
       channels(channel_set),
-      counts(tile_rect.pixel_count(), 0),
-      planes(channel_set.plane_count() * tile_rect.pixel_count()) {
+      pixels(std::move(pixel_set)),
+      counts(pixels.count(tile_rect.pixel_count()), 0),
+      planes(channel_set.plane_count() * counts.size()) {
     fill_empty(*this);
 }
 
@@ -62,15 +85,15 @@ void FilmTile::reset(SampleBlock sample_block) {
 }
 
 void paste(FilmTile& film, const FilmTile& tile) {
-    copy_rows<std::uint32_t>(tile.counts, tile.rect, film.counts, film.rect);
+    copy<std::uint32_t>(tile.counts, tile, film.counts, film.rect);
     for (std::uint32_t plane = 0; plane < tile.channels.plane_count(); ++plane) {
-        copy_rows<float>(tile.plane(plane), tile.rect, film.plane(plane), film.rect);
+        copy<float>(tile.plane(plane), tile, film.plane(plane), film.rect);
     }
     film.nonfinite_samples += tile.nonfinite_samples;
 }
 
 FilmTile with_channels(const FilmTile& tile, ChannelSet channels) {
-    FilmTile result(tile.rect, tile.block, channels);
+    FilmTile result(tile.rect, tile.block, channels, tile.pixels);
     result.counts = tile.counts;
     result.nonfinite_samples = tile.nonfinite_samples;
     for (const ChannelInfo& entry : channel_table()) {
@@ -85,8 +108,20 @@ FilmTile with_channels(const FilmTile& tile, ChannelSet channels) {
     return result;
 }
 
+FilmTile with_pixels(const FilmTile& tile, const PixelSet& pixels) {
+    FilmTile result(tile.rect, tile.block, tile.channels, pixels);
+    for (std::size_t i = 0; i < result.pixel_count(); ++i) result.counts[i] = tile.counts[pixels.index(i)];
+    for (std::uint32_t plane = 0; plane < tile.channels.plane_count(); ++plane) {
+        const std::span<const float> from = tile.plane(plane);
+        const std::span<float> to = result.plane(plane);
+        for (std::size_t i = 0; i < to.size(); ++i)
+            std::memcpy(&to[i], &from[pixels.index(i)], sizeof(float));
+    }
+    return result;
+}
+
 bool identical_bits(const FilmTile& a, const FilmTile& b) {
-    return a.rect == b.rect && a.channels == b.channels && a.counts == b.counts &&
+    return a.rect == b.rect && a.channels == b.channels && a.pixels == b.pixels && a.counts == b.counts &&
            a.nonfinite_samples == b.nonfinite_samples && a.planes.size() == b.planes.size() &&
            std::memcmp(a.planes.data(), b.planes.data(), a.planes.size() * sizeof(float)) == 0;
 }

@@ -235,7 +235,7 @@ void put_sample(FilmTile& tile, std::size_t pixel, std::span<const float> values
 }
 
 void merge(FilmTile& into, const FilmTile& later) {
-    assert(into.rect == later.rect && into.channels == later.channels &&
+    assert(into.rect == later.rect && into.pixels == later.pixels && into.channels == later.channels &&
            into.block.end() <= later.block.first);
     const Counts counts(into, later);
     const bool are_siblings = into.block.sibling() == later.block;

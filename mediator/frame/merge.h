@@ -10,7 +10,7 @@ namespace tessera::frame {
 // depend on which channels are asked for; an infinite depth is legal.
 void put_sample(FilmTile& tile, std::size_t pixel, std::span<const float> values);
 
-// into := merge(into, later). Both cover the same rect and channels; `later` starts where `into` ends or anywhere
+// into := merge(into, later). Both cover the same rect, pixels and channels; `later` starts where `into` ends or anywhere
 // after it. Siblings with equal counts need no division: mean = (a + b) / 2, M2 = M2a + M2b + (a - b)^2 n / 2 with n
 // samples in each half; other counts use the general form (Chan et al. 1979). This is the only
 // implementation, compiled once without contraction, so that node and master get the same bits.
