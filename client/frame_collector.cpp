@@ -41,7 +41,8 @@ Expected<void> FrameCollector::add(wire::FrameTile&& tile) {
     if (tile.count != header_->film_tiles || tile.index >= seen_.size())
         return unfit("a tile with a number beyond its count");
     if (seen_[tile.index]) return {};
-    if (intersection(film.rect, header_->film_window) != film.rect || film.channels != channels)
+    if (intersection(film.rect, header_->film_window) != film.rect || film.channels != channels ||
+        !film.pixels.is_all())
         return unfit("a tile that does not fit the frame");
     seen_[tile.index] = true;
     ++tile_count_;

@@ -11,8 +11,8 @@ namespace {
 
 bool are_halves(const wire::FilmPart& a, const wire::FilmPart& b) {
     return a.view == b.view && a.revision == b.revision && a.version == b.version &&
-           a.film.rect == b.film.rect && a.film.channels == b.film.channels &&
-           a.film.block == b.film.block.sibling();
+           a.film.rect == b.film.rect && a.film.pixels == b.film.pixels &&
+           a.film.channels == b.film.channels && a.film.block == b.film.block.sibling();
 }
 
 // Into the earlier half.
@@ -30,7 +30,8 @@ void join(HeldFilm::Item& into, HeldFilm::Item&& other) {
 
 bool is_in_other_half(const wire::FilmPart& film, const view::WorkUnit& unit) {
     return unit.view == film.view && unit.revision == film.revision && unit.version == film.version &&
-           unit.tile == film.film.rect && film.film.block.sibling().contains(unit.block);
+           unit.tile == film.film.rect && film.film.block.sibling().contains(unit.block) &&
+           unit.pixels() == film.film.pixels;
 }
 
 void HeldFilm::add(wire::FilmPart film, TimePoint now) {

@@ -82,17 +82,12 @@ class EmbreeBackend final : public Backend {
 
     static bool fill(frame::FilmTile& tile, const PathTracer& tracer, std::uint64_t& rays,
                      const std::stop_token& stop) {
-        std::size_t pixel = 0;
-        for (std::int32_t y = tile.rect.y; y < tile.rect.bottom(); ++y) {
-            if (stop.stop_requested()) return false;
-            for (std::int32_t x = tile.rect.x; x < tile.rect.right(); ++x, ++pixel) {
-                const PathSample sample = tracer.trace(static_cast<std::uint32_t>(x),
-                                                       static_cast<std::uint32_t>(y), tile.block.first, rays);
-                const shading::SampleValues values = shading::sample_values(tracer.view(), sample);
-                frame::put_sample(tile, pixel, {values.items, values.count});
-            }
-        }
-        return true;
+        return for_each_pixel(tile, stop, [&](std::size_t pixel, std::int32_t x, std::int32_t y) {
+            const PathSample sample = tracer.trace(static_cast<std::uint32_t>(x),
+                                                   static_cast<std::uint32_t>(y), tile.block.first, rays);
+            const shading::SampleValues values = shading::sample_values(tracer.view(), sample);
+            frame::put_sample(tile, pixel, {values.items, values.count});
+        });
     }
 
     const BackendSettings settings_;

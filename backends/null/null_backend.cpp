@@ -103,17 +103,12 @@ class NullBackend final : public Backend {
         if (tile.channels == frame::ChannelSet{frame::Channel::Color})
             return fill_color(tile, view, key, stop);
         std::vector<float> values;
-        std::size_t pixel = 0;
-        for (std::int32_t y = tile.rect.y; y < tile.rect.bottom(); ++y) {
-            if (stop.stop_requested()) return false;
-            for (std::int32_t x = tile.rect.x; x < tile.rect.right(); ++x, ++pixel) {
-                const Gradient sample = gradient(view, shadow_.flat_scene(), key, x, y, tile.block.first);
-                append_values(sample, tile.channels, values);
-                frame::put_sample(tile, pixel, values);
-                values.clear();
-            }
-        }
-        return true;
+        return for_each_pixel(tile, stop, [&](std::size_t pixel, std::int32_t x, std::int32_t y) {
+            const Gradient sample = gradient(view, shadow_.flat_scene(), key, x, y, tile.block.first);
+            append_values(sample, tile.channels, values);
+            frame::put_sample(tile, pixel, values);
+            values.clear();
+        });
     }
 
     // Fast path for colour only, as display walls use it.
@@ -121,15 +116,10 @@ class NullBackend final : public Backend {
                     const std::stop_token& stop) const {
         std::fill(tile.counts.begin(), tile.counts.end(), 1u);
         const std::array planes{tile.plane(0), tile.plane(1), tile.plane(2)};
-        std::size_t pixel = 0;
-        for (std::int32_t y = tile.rect.y; y < tile.rect.bottom(); ++y) {
-            if (stop.stop_requested()) return false;
-            for (std::int32_t x = tile.rect.x; x < tile.rect.right(); ++x, ++pixel) {
-                const Colors light = colors(view, key, x, y, tile.block.first);
-                for (std::size_t c = 0; c < 3; ++c) planes[c][pixel] = light.direct[c] + light.indirect[c];
-            }
-        }
-        return true;
+        return for_each_pixel(tile, stop, [&](std::size_t pixel, std::int32_t x, std::int32_t y) {
+            const Colors light = colors(view, key, x, y, tile.block.first);
+            for (std::size_t c = 0; c < 3; ++c) planes[c][pixel] = light.direct[c] + light.indirect[c];
+        });
     }
 
     // Sleeps for the simulated cost, so that many nodes can be simulated on few cores. False: stopped.

@@ -15,7 +15,7 @@ namespace tessera::vulkan {
 
 namespace {
 
-// One dispatch in flight: individual samples, or whole samples of the tile that are merged after it.
+// One dispatch in flight: individual samples, or whole samples of all its pixels that are merged after it.
 struct Batch {
     Buffer values;   // of the samples, readable by the host
     Buffer scratch;  // the same for samples that are merged
@@ -57,7 +57,8 @@ class UnitRun {
           dispatch_budget_(with.dispatch_budget),
           scene_(with.scene),
           unit_(unit),
-          pixels_(static_cast<std::uint32_t>(unit.tile.pixel_count())),
+          rendered_(unit.pixels().value()),
+          pixels_(static_cast<std::uint32_t>(rendered_.count(unit.tile.pixel_count()))),
           values_(value_count(channels)),
           planes_(channels.plane_count()),
           all_(unit.block.count() * pixels_),
@@ -67,6 +68,10 @@ class UnitRun {
             view.camera_keys.items = reinterpret_cast<const shading::Affine3x4*>(camera_keys_.address());
         }
         view_ = make_buffer(device_, std::vector<shading::View>{view});
+        if (!rendered_.is_all()) {
+            const std::span<const std::uint32_t> indices = rendered_.indices();
+            indices_ = make_buffer(device_, std::vector<std::uint32_t>(indices.begin(), indices.end()));
+        }
         const bool trees = view.renderer == shading::RendererWhitted ||
                            view.renderer == shading::RendererRaster ||
                            (view.recorded_quantities & shading::RecordsHeadlight) != 0;
@@ -149,22 +154,25 @@ class UnitRun {
     }
 
     Dispatch trace_dispatch(const Buffer& values, std::uint32_t items) const {
-        Dispatch dispatch{.pipeline = &kernel_.get(),
-                          .arguments = Job{.scene = scene_.record(),
-                                           .view = view_.address(),
-                                           .pool = scene_.pool().address(),
-                                           .values = values.address(),
-                                           .first_sample = unit_.block.first + sent_ / pixels_,
-                                           .top = scene_.top(),
-                                           .x = static_cast<std::uint32_t>(unit_.tile.x),
-                                           .y = static_cast<std::uint32_t>(unit_.tile.y),
-                                           .width = static_cast<std::uint32_t>(unit_.tile.width),
-                                           .pixels = pixels_,
-                                           .first_item = static_cast<std::uint32_t>(sent_ % pixels_),
-                                           .item_count = items,
-                                           .seen = raster_ ? raster_->seen().address() : 0},
-                          .groups = {groups_of(items)},
-                          .writes = {&values}};
+        Dispatch dispatch{
+            .pipeline = &kernel_.get(),
+            .arguments = Job{.scene = scene_.record(),
+                             .view = view_.address(),
+                             .pool = scene_.pool().address(),
+                             .values = values.address(),
+                             .first_sample = unit_.block.first + sent_ / pixels_,
+                             .top = scene_.top(),
+                             .x = static_cast<std::uint32_t>(unit_.tile.x),
+                             .y = static_cast<std::uint32_t>(unit_.tile.y),
+                             .width = static_cast<std::uint32_t>(unit_.tile.width),
+                             .pixels = pixels_,
+                             .first_item = static_cast<std::uint32_t>(sent_ % pixels_),
+                             .item_count = items,
+                             .tile_pixels = static_cast<std::uint32_t>(unit_.tile.pixel_count()),
+                             .seen = raster_ ? raster_->seen().address() : 0,
+                             .indices = rendered_.is_all() ? 0 : indices_.address()},
+            .groups = {groups_of(items)},
+            .writes = {&values}};
         if (raster_) dispatch.reads = {&raster_->seen()};
         if (scene_.traversal() == Traversal::Texels) dispatch.bound = {&scene_.pool()};
         return dispatch;
@@ -208,9 +216,10 @@ class UnitRun {
     DispatchBudget& dispatch_budget_;
     const GpuScene& scene_;
     const view::WorkUnit& unit_;
+    frame::PixelSet rendered_;
     std::uint32_t pixels_, values_, planes_;
     std::uint64_t all_, sent_ = 0;  // items
-    Buffer camera_keys_, view_, columns_;
+    Buffer camera_keys_, view_, columns_, indices_;
     std::uint32_t column_count_ = 0;
     bool merges_ = false;
     Kernel kernel_, merge_kernel_;

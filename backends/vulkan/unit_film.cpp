@@ -18,12 +18,12 @@ std::uint32_t value_count(frame::ChannelSet channels) {
 }
 
 UnitFilm::UnitFilm(const view::WorkUnit& unit, frame::ChannelSet channels)
-    : unit_(unit), channels_(channels), values_(value_count(channels)) {
+    : unit_(unit), pixels_(unit.pixels().value()), channels_(channels), values_(value_count(channels)) {
     begin(unit.block.first);
 }
 
 void UnitFilm::begin(std::uint64_t sample) {
-    if (sample < unit_.block.end()) tile_ = finished_.recycled(unit_.tile, {sample, 0}, channels_);
+    if (sample < unit_.block.end()) tile_ = finished_.recycled(unit_.tile, {sample, 0}, channels_, pixels_);
     pixel_ = 0;
 }
 

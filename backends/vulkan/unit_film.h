@@ -11,8 +11,8 @@ namespace tessera::vulkan {
 // The number of floats per sample.
 std::uint32_t value_count(frame::ChannelSet channels);
 
-// The film of a unit, filled in the order of its samples: by single ones, or by merged blocks of the whole
-// tile. The unit outlives it.
+// The film of a unit, filled in the order of its samples: by single ones, or by merged blocks of all its
+// pixels. The unit outlives it.
 class UnitFilm {
   public:
     UnitFilm(const view::WorkUnit& unit, frame::ChannelSet channels);
@@ -31,6 +31,7 @@ class UnitFilm {
     void begin(std::uint64_t sample);
 
     const view::WorkUnit& unit_;
+    frame::PixelSet pixels_;
     frame::ChannelSet channels_;
     std::uint32_t values_;
     frame::BlockStack finished_;

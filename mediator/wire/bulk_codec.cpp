@@ -17,7 +17,9 @@ namespace {
 constexpr std::uint32_t Magic = 0x31525354;              // "TSR1"
 constexpr std::size_t MaxPixels = std::size_t{1} << 16;  // of a film tile: 256 x 256
 constexpr std::size_t HeaderRoom = 256;
+// Flags of film.
 constexpr std::uint8_t UniformCounts = 1;  // one count for all pixels instead of a plane
+constexpr std::uint8_t Masked = 2;         // a mask follows: counts and planes have its pixels alone
 
 using Data = std::vector<std::byte>;
 
@@ -48,10 +50,12 @@ void put_film(ByteWriter& out, const frame::FilmTile& film) {
     out.put(film.block.level);
     put_channels(out, film.channels);
     out.put(film.nonfinite_samples);
+    const std::string mask = film.pixels.bits(film.rect.pixel_count());
     const bool uniform =
         !film.counts.empty() && std::all_of(film.counts.begin(), film.counts.end(),
                                             [&](std::uint32_t n) { return n == film.counts[0]; });
-    out.put(uniform ? UniformCounts : std::uint8_t{0});
+    out.put(static_cast<std::uint8_t>((uniform ? UniformCounts : 0) | (mask.empty() ? 0 : Masked)));
+    out.put_all(std::span(mask));
     if (uniform) {
         out.put(film.counts[0]);
     } else {
@@ -60,36 +64,52 @@ void put_film(ByteWriter& out, const frame::FilmTile& film) {
     out.put_all(std::span(film.planes));
 }
 
-struct FilmArea {
+// All but counts and planes.
+struct FilmHeader {
     Rect rect;
     frame::SampleBlock block;
+    frame::ChannelSet channels;
+    std::uint64_t nonfinite = 0;
+    bool has_uniform_counts = false;
+    std::string mask;  // as view::WorkUnit::mask
 };
-FilmArea get_area(ByteReader& in) {
-    FilmArea area{.rect = in.get<Rect>(), .block = {}};
-    area.block.first = in.get<std::uint64_t>();
-    area.block.level = in.get<std::uint32_t>();
+FilmHeader get_film_header(ByteReader& in) {
+    FilmHeader header{.rect = in.get<Rect>(), .block = {}, .channels = {}, .mask = {}};
+    header.block.first = in.get<std::uint64_t>();
+    header.block.level = in.get<std::uint32_t>();
     constexpr std::int32_t MaxEdge = 65536;
-    const Rect& rect = area.rect;
+    const Rect& rect = header.rect;
     if (rect.empty() || rect.x < 0 || rect.y < 0 || rect.width > MaxEdge || rect.height > MaxEdge ||
         rect.x > MaxEdge || rect.y > MaxEdge || rect.pixel_count() > MaxPixels) {
         in.fail("the tile's size is absurd");
     }
-    if (area.block.level >= 32 || !area.block.is_aligned()) in.fail("a block of samples is not aligned");
-    return area;
+    if (header.block.level >= 32 || !header.block.is_aligned()) in.fail("a block of samples is not aligned");
+    header.channels = get_channels(in);
+    header.nonfinite = in.get<std::uint64_t>();
+    const auto flags = in.get<std::uint8_t>();
+    if ((flags & ~(UniformCounts | Masked)) != 0) in.fail("it has unknown flags");
+    header.has_uniform_counts = (flags & UniformCounts) != 0;
+    if ((flags & Masked) == 0) return header;
+    const std::size_t bytes = (rect.pixel_count() + 7) / 8;
+    if (bytes > in.rest().size()) in.fail("it ends too early");  // before it is allocated
+    header.mask.resize(bytes);
+    in.fill(std::span(header.mask));
+    return header;
 }
 
 frame::FilmTile get_film(ByteReader& in) {
-    const auto [rect, block] = get_area(in);
-    const frame::ChannelSet channels = get_channels(in);
-    const auto nonfinite = in.get<std::uint64_t>();
-    const bool uniform = in.get<std::uint8_t>() == UniformCounts;
+    const FilmHeader header = get_film_header(in);
+    const std::size_t all = header.rect.pixel_count();
+    auto pixels = frame::PixelSet::from_bits(header.mask, all);
+    if (!pixels) in.fail("the mask does not fit the tile");
     // The size is known before anything is allocated.
-    const std::size_t pixels = rect.pixel_count();
-    const std::size_t expected = (uniform ? 4 : 4 * pixels) + 4 * channels.plane_count() * pixels;
+    const std::size_t count = pixels->count(all);
+    const std::size_t expected =
+        (header.has_uniform_counts ? 4 : 4 * count) + 4 * header.channels.plane_count() * count;
     if (in.rest().size() != expected) in.fail("the planes have another size than the header says");
-    frame::FilmTile film(rect, block, channels);
-    film.nonfinite_samples = nonfinite;
-    if (uniform) {
+    frame::FilmTile film(header.rect, header.block, header.channels, *std::move(pixels));
+    film.nonfinite_samples = header.nonfinite;
+    if (header.has_uniform_counts) {
         std::fill(film.counts.begin(), film.counts.end(), in.get<std::uint32_t>());
     } else {
         in.fill(std::span(film.counts));
@@ -279,17 +299,18 @@ Expected<FilmHead> film_head(std::span<const std::byte> bytes) {
     try {
         ByteReader in(bytes.subspan(8));
         FilmPart part;
-        FilmArea area;
+        FilmHeader header;
         for_each_row<FilmPart>([&]<std::size_t I>(std::integral_constant<std::size_t, I>) {
             set_row<I>(part, [&]<class V>(V& value) {
                 if constexpr (std::is_same_v<V, frame::FilmTile>) {
-                    area = get_area(in);
+                    header = get_film_header(in);
                 } else {
                     get(in, value);
                 }
             });
         });
-        return FilmHead{part.unit, part.view, part.revision, part.version, area.rect, area.block};
+        return FilmHead{part.unit,   part.view,    part.revision,         part.version,
+                        header.rect, header.block, std::move(header.mask)};
     } catch (const Error& error) {
         return tl::unexpected(error);
     }

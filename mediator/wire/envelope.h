@@ -30,6 +30,7 @@ struct FilmHead {
     Version version;
     Rect rect;
     frame::SampleBlock block;
+    std::string mask;  // as WorkUnit's
 };
 Expected<FilmHead> film_head(std::span<const std::byte> bytes);
 

@@ -163,6 +163,17 @@ struct RecordedTransaction {
     }
 };
 
+// Samples of pixels of a tile that an adaptive view gets in its current step.
+struct SavedPart {
+    Rect tile;
+    frame::SampleBlock block;
+    std::string mask;  // as view::WorkUnit::mask
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "tile", &SavedPart::tile), row(2, "block", &SavedPart::block),
+                          row(3, "mask", &SavedPart::mask));
+    }
+};
+
 // A view and its film.
 struct SavedView {
     std::string name, owner_user;
@@ -173,6 +184,8 @@ struct SavedView {
     std::uint64_t films = 0;  // begun for the view, that of the blocks included
     std::vector<frame::FilmTile> blocks;
     std::uint64_t block_count = 0;  // when decoded: the number of blocks that follow in the file
+    std::uint32_t steps = 0;        // of an adaptive view: decided ones
+    std::vector<SavedPart> step;    // the last one: a part of it may be in the blocks
     static constexpr auto describe(auto row) {
         return std::tuple(
             row(1, "name", &SavedView::name), row(2, "owner_user", &SavedView::owner_user),
@@ -195,7 +208,8 @@ struct SavedView {
                          },
                          [](SavedView& view, std::uint64_t count) { view.block_count = count; }}),
             row(9, "request", &SavedView::request), row(10, "kind", &SavedView::kind),
-            row(11, "films", &SavedView::films));
+            row(11, "films", &SavedView::films), row(12, "steps", &SavedView::steps),
+            row(13, "step", &SavedView::step, Limit{MaxRecorded}));
     }
 };
 

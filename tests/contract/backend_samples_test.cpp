@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 
+#include "mediator/base/random.h"
 #include "mediator/frame/merge.h"
 #include "tests/contract/backend_contract.h"
 
@@ -49,6 +50,33 @@ TEST_P(BackendSamples, TheChannelsOfASampleAreConsistent) {
     for (std::uint32_t c = 0; c < 3; ++c) {
         const auto half = four.plane(view.channels.first_plane(Channel::FirstHalf) + c);
         ASSERT_TRUE(std::ranges::equal(half, two.plane(view.channels.first_plane(Channel::Radiance) + c)));
+    }
+}
+
+// Some pixels of a tile have the bits that they have among all, however few they are, also in merged blocks.
+TEST_P(BackendSamples, APixelOfAMaskIsThatOfTheWholeTile) {
+    const Rect tile{8, 4, 31, 17};
+    const FilmTile all = render(*backend, tile, {8, 3});
+    CounterRandom random(8);
+    for (const std::uint64_t one_of : {2u, 20u, 600u}) {
+        std::vector<std::uint32_t> indices{static_cast<std::uint32_t>(random.below(tile.pixel_count()))};
+        for (std::uint32_t i = 0; i < tile.pixel_count(); ++i) {
+            if (random.below(one_of) == 0) indices.push_back(i);
+        }
+        std::ranges::sort(indices);
+        indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+        const frame::PixelSet pixels(indices, tile.pixel_count());
+        view::WorkUnit work = unit(tile, {8, 3});
+        work.mask = pixels.bits(tile.pixel_count());
+        const RenderResult result = backend->render(view, work, {});
+        ASSERT_EQ(result.blocks.size(), 1u);
+        const FilmTile& some = result.blocks[0];
+        EXPECT_EQ(some.pixels, pixels);
+        EXPECT_EQ(some.pixel_count(), indices.size());
+        FilmTile expected = with_pixels(all, pixels);
+        expected.nonfinite_samples = some.nonfinite_samples;
+        EXPECT_TRUE(identical_bits(some, expected)) << indices.size() << " pixels";
+        EXPECT_GE(result.rays, 8 * indices.size());
     }
 }
 

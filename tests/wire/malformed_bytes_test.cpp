@@ -205,6 +205,46 @@ TEST(MalformedBytes, InvalidFilmIsRefused) {
     EXPECT_TRUE(refused([](FilmPart& part) { part.film.planes.pop_back(); }));
 }
 
+TEST(MalformedBytes, MasksThatDoNotFitTheirTileAreRefused) {
+    const auto unit_refused = [](std::string mask) {
+        Work work{.sequence = 1, .unit = {.id = UnitId{1}, .tile = {0, 0, 5, 2}, .block = {4, 2}}};
+        work.unit.mask = std::move(mask);
+        return !decode_control(encode(ControlMessage(work)));
+    };
+    EXPECT_FALSE(unit_refused(""));
+    EXPECT_FALSE(unit_refused(std::string("\x01\x02", 2)));
+    for (const std::string& mask : {std::string("\x01"), std::string("\0\0", 2), std::string("\x01\x04", 2),
+                                    std::string("\xff\x03", 2), std::string(3, '\x01')})
+        EXPECT_TRUE(unit_refused(mask));
+    FilmPart part{.unit = UnitId{1},
+                  .film = frame::FilmTile({0, 0, 5, 2}, {4, 0}, {frame::Channel::Radiance},
+                                          frame::PixelSet({1, 8}, 10))};
+    part.film.counts = {1, 1};
+    const std::vector<std::byte> good = encode(BulkMessage(part));
+    const auto decoded = decode_bulk(good);
+    ASSERT_TRUE(decoded);
+    EXPECT_TRUE(identical_bits(std::get<FilmPart>(*decoded).film, part.film));
+    EXPECT_EQ(film_head(good)->mask, std::string("\x02\x01", 2));
+    for (const std::uint8_t flag : {4, 8, 64, 128}) {
+        std::vector<std::byte> bad = good;
+        bad[good.size() - 2 * 6 * sizeof(float) - 4 - 2 - 1] |= std::byte{flag};
+        EXPECT_FALSE(decode_bulk(bad)) << int{flag} << " is no flag";
+    }
+    const frame::FilmTile whole({0, 0, 5, 2}, {4, 0}, {frame::Channel::Radiance});
+    part.film = whole;
+    part.film.counts.assign(10, 1);
+    EXPECT_EQ(encode(BulkMessage(part)).size() - good.size(), 8u * 6 * sizeof(float) - 2)
+        << "as many planes as pixels";
+    // Each bit, those of the mask among them.
+    std::size_t accepted = 0;
+    for (std::size_t i = 0; i < 8 * good.size(); ++i) {
+        std::vector<std::byte> bad = good;
+        bad[i / 8] ^= std::byte{1} << (i % 8);
+        if (const auto head = film_head(bad); head && !decode_bulk(bad)) ++accepted;
+    }
+    EXPECT_GT(accepted, 16u) << "the header alone does not show it";
+}
+
 // Every plane of every channel, by its merge rule.
 TEST(MalformedBytes, ImpossibleValuesInAnyPlaneAreRefused) {
     constexpr float Infinity = std::numeric_limits<float>::infinity();

@@ -128,11 +128,13 @@ layout(push_constant, scalar) uniform Arguments {
     uint x, y, width;
     uint pixels;
     uint first_item, item_count;
-    uint unused;
+    uint tile_pixels;
     UVec2Array seen;
+    uint64_t indices;
 }
 job;
 
+// `at`: of the pixel and sample among those of the tile that are drawn.
 Path trace(IN(Context) context, uint x, uint y, uint64_t index, uint at) {
 #ifdef RASTERISED
     const Ray ray = camera_ray(context.view, x, y, raster_place(context.view, index));
@@ -151,8 +153,10 @@ void main() {
     const uint item = gl_GlobalInvocationID.x;
     if (item >= job.item_count) return;
     const uint at = job.first_item + item;
-    const uint pixel = at % job.pixels;
-    const uint64_t index = job.first_sample + uint64_t(at / job.pixels);
+    uint pixel = at % job.pixels;
+    if (job.indices != 0ul) pixel = UintArray(job.indices).items[pixel];
+    const uint later = at / job.pixels;
+    const uint64_t index = job.first_sample + uint64_t(later);
 
     Context context;
     context.scene = job.scene.items[0];
@@ -167,7 +171,7 @@ void main() {
     const uint x = job.x + pixel % job.width, y = job.y + pixel / job.width;
     context.time = sample_time(Features, context.view, x, y, index);
 
-    const Path path = trace(context, x, y, index, at);
+    const Path path = trace(context, x, y, index, later * job.tile_pixels + pixel);
     Sink sink = Sink(job.values, item, job.item_count);
     put_sample_values(sink, context.view, path.found);
     store_value(sink, float_from_bits(path.rays));

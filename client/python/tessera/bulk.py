@@ -93,6 +93,7 @@ _TILE_HEAD = struct.Struct("<QII")
 _PICTURE_CHUNK = struct.Struct("<QQQ")
 _FRAME_HEADER = struct.Struct("<QQQQQIIIIIQiiiiIIQQQ32s")
 _FILM_HEAD = struct.Struct("<iiiiQIIQB")
+_UNIFORM_COUNTS = 1  # a flag
 
 
 def encode(message: BulkMessage) -> bytes:
@@ -179,7 +180,7 @@ def _piece(data: memoryview, total: int, offset: int) -> bytes:
 def _film(payload: memoryview) -> FilmTile:
     if len(payload) < _FILM_HEAD.size:
         raise Malformed("it ends too early")
-    x, y, width, height, _, level, channels, _, uniform = _FILM_HEAD.unpack_from(payload)
+    x, y, width, height, _, level, channels, _, flags = _FILM_HEAD.unpack_from(payload)
     if not (0 < width <= _MAX_EDGE and 0 < height <= _MAX_EDGE and 0 <= x <= _MAX_EDGE and 0 <= y <= _MAX_EDGE and
             width * height <= _MAX_PIXELS):
         raise Malformed("the tile's size is absurd")
@@ -187,11 +188,13 @@ def _film(payload: memoryview) -> FilmTile:
         raise Malformed("a channel is unknown")
     if level >= 32:
         raise Malformed("a block of samples is too large")
+    if flags not in (0, _UNIFORM_COUNTS):
+        raise Malformed("it has unknown flags, or not all pixels of its tile")
     pixels = width * height
     rest = payload[_FILM_HEAD.size:]
-    count_bytes = 4 if uniform == 1 else 4 * pixels
+    count_bytes = 4 if flags == _UNIFORM_COUNTS else 4 * pixels
     if len(rest) != count_bytes + 4 * pixels * plane_count(channels):
         raise Malformed("the planes have another size than the header says")
     counts = bytes(rest[:count_bytes])
-    return FilmTile(x, y, width, height, channels, counts * pixels if uniform == 1 else counts,
+    return FilmTile(x, y, width, height, channels, counts * pixels if flags == _UNIFORM_COUNTS else counts,
                     bytes(rest[count_bytes:]))
