@@ -243,7 +243,7 @@ std::string SceneSession::view_problem(const SessionRecord& session, std::uint64
     if (std::string problem = problem_of(wanted); !problem.empty()) return problem;
     if (std::string problem = viewer_problem(session, number, wanted); !problem.empty()) return problem;
     session::ViewRequest completed = wanted;
-    complete(completed.view);
+    complete(completed);
     return memory_problem(completed, views_.watched(session.id, number));
 }
 

@@ -18,7 +18,8 @@ std::optional<Admission> Dispatcher::admit(NodeRecord& node, const wire::FilmHea
         malformed_film(node, "film of a unit of another view", bytes, now);
         return std::nullopt;
     }
-    Admission admission = pass->scheduler.admit(node.id, {head.unit, head.version, head.rect, head.block});
+    Admission admission =
+        pass->scheduler.admit(node.id, {head.unit, head.version, head.rect, head.block, head.mask});
     if (admission.use == Admission::Use::Drop) {
         film_is_taken(node.id, bytes);
         return std::nullopt;

@@ -42,6 +42,11 @@ void FilmStore::copy(ViewId view) {
     enqueue(Copy{view}, 0);
 }
 
+void FilmStore::decide(ViewId view, std::uint64_t revision, const AdaptiveSettings& settings,
+                       std::vector<std::uint32_t> closed_tiles) {
+    enqueue(Decide{view, revision, settings, std::move(closed_tiles)}, 0);
+}
+
 void FilmStore::reconstruct(std::uint64_t frame, const view::View& view, const SceneState& scene,
                             const PictureFormat& format, FilmHash hash) {
     enqueue(Reconstruct{frame, view, scene, format, hash}, 0);
@@ -168,6 +173,22 @@ void FilmStore::perform(Copy& task) {
     if (opened != nullptr) outputs_.put(FilmBlocks{task.view, opened->revision, opened->assembler->blocks()});
 }
 
+void FilmStore::perform(Decide& task) {
+    const OpenFilm* opened = film(task.view);
+    if (opened == nullptr || opened->revision != task.revision) return;
+    const FrameAssembler& assembler = *opened->assembler;
+    std::vector<std::uint8_t> doublings = assembler.doublings();
+    const frame::FilmTile film = assembler.whole();
+    for (const std::uint32_t tile : task.closed_tiles) {
+        const Rect& rect = assembler.tiles()[tile];
+        for (std::int32_t row = 0; row < rect.height; ++row)
+            std::fill_n(doublings.begin() + std::ptrdiff_t{rect.y + row - film.rect.y} * film.rect.width +
+                            (rect.x - film.rect.x),
+                        rect.width, std::uint8_t{255});
+    }
+    outputs_.put(
+        StepDecision{task.view, task.revision, next_step(film, doublings, assembler.tiles(), task.settings)});
+}
 void FilmStore::perform(Reconstruct& task) {
     const OpenFilm* opened = film(task.view.id);
     if (opened == nullptr) return;

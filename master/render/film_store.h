@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "master/render/adaptive/step.h"
 #include "master/render/frame_assembler.h"
 #include "master/render/picture_worker.h"
 #include "master/render/render_outputs.h"
@@ -37,6 +38,11 @@ class FilmStore {
     // Tiles [first, last) as messages for a client.
     void deliver(ViewId view, std::uint64_t frame, std::uint32_t first, std::uint32_t last);
     void copy(ViewId view);  // results in FilmBlocks, or in nothing when there is no such film
+
+    // The next step of an adaptive picture; results in a StepDecision, or in nothing when there is no such film. Tiles that
+    // are closed get no more samples.
+    void decide(ViewId view, std::uint64_t revision, const AdaptiveSettings& settings,
+                std::vector<std::uint32_t> closed_tiles);
 
     enum class FilmHash { Wanted, NotWanted };
     // Of the film of view.id, which shows `scene`. No result when there is no such film.
@@ -83,6 +89,12 @@ class FilmStore {
     struct Copy {
         ViewId view;
     };
+    struct Decide {
+        ViewId view;
+        std::uint64_t revision;
+        AdaptiveSettings settings;
+        std::vector<std::uint32_t> closed_tiles;
+    };
     struct Reconstruct {
         std::uint64_t frame;
         view::View view;
@@ -90,8 +102,8 @@ class FilmStore {
         PictureFormat format;
         FilmHash hash;
     };
-    using Task = std::variant<Open, Close, RetainAsFeatures, AddChannels, Film, Deliver, Copy, Reconstruct,
-                              OutputRequest>;
+    using Task = std::variant<Open, Close, RetainAsFeatures, AddChannels, Film, Deliver, Copy, Decide,
+                              Reconstruct, OutputRequest>;
     struct OpenFilm {
         std::uint64_t revision = 0;
         std::shared_ptr<FrameAssembler> assembler;
@@ -108,6 +120,7 @@ class FilmStore {
     void merge(Film& task, MergeReport& report);
     void perform(Deliver& task);
     void perform(Copy& task);
+    void perform(Decide& task);
     void perform(Reconstruct& task);
     void perform(OutputRequest& task);
     OpenFilm* film(ViewId view);

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "master/render/schedule/block_set.h"
-#include "mediator/frame/block_forest.h"
+#include "mediator/frame/tile_film.h"
 
 namespace tessera::master {
 
-// The film of one view: a block forest per tile. Film that does not match the frame (other rect, channels, samples
+// The film of one view: that of each of its tiles. Film that does not match the frame (other rect, channels, samples
 // beyond spp) is rejected. Single-threaded.
 class FrameAssembler {
   public:
@@ -33,21 +33,31 @@ class FrameAssembler {
     frame::FilmTile whole() const;                          // all tiles in one; its block is meaningless
     // After add_channels(): the later samples alone, with all channels.
     std::optional<frame::FilmTile> later() const;
-    std::vector<frame::SampleBlock> roots(std::uint32_t tile) const { return forests_[tile].roots(); }
-    std::vector<frame::FilmTile> blocks() const;  // all blocks, unmerged; not after add_channels()
+    // Of the samples that all pixels have.
+    std::vector<frame::SampleBlock> roots(std::uint32_t tile) const { return films_[tile].roots(); }
+    // All complete blocks, unmerged; not after add_channels().
+    std::vector<frame::FilmTile> blocks() const;
+    // See frame::TileFilm, in raster order of the whole film; 255 for pixels without samples.
+    std::vector<std::uint8_t> doublings() const;
+    // Of one tile; empty: it has no samples.
+    std::vector<std::uint8_t> doublings(std::uint32_t tile) const {
+        return films_[tile].empty() ? std::vector<std::uint8_t>() : films_[tile].doublings();
+    }
+    const std::vector<Rect>& tiles() const { return tiles_; }
     std::uint64_t byte_size() const;
 
   private:
-    frame::BlockForest all_blocks(std::uint32_t tile) const;
+    frame::TileFilm all_blocks(std::uint32_t tile) const;
+    Rect bounds() const;
     template <class PasteTile>
     frame::FilmTile pasted(frame::ChannelSet channels, const PasteTile& paste_tile) const;
 
     std::vector<Rect> tiles_;
     frame::ChannelSet channels_;
     std::uint64_t spp_;
-    std::vector<frame::BlockForest> forests_;
+    std::vector<frame::TileFilm> films_;
     // After add_channels(): what there was before, and its channels.
-    std::vector<frame::BlockForest> earlier_;
+    std::vector<frame::TileFilm> earlier_;
     frame::ChannelSet earlier_channels_;
     std::map<std::pair<std::int32_t, std::int32_t>, std::uint32_t> by_corner_;
 };

@@ -1,17 +1,48 @@
 #include "master/render/pass_starter.h"
 
+#include <algorithm>
+#include <bit>
+
+#include "master/render/adaptive/saved_step.h"
+
 namespace tessera::master {
 
+namespace {
+
+void continue_step(Scheduler& scheduler, const FrameAssembler& film, std::span<const wire::SavedPart> step) {
+    const auto base = static_cast<std::uint8_t>(std::countr_zero(session::StopRule::AdaptiveBase));
+    std::uint64_t further = 0;
+    for (std::uint32_t tile = 0; tile < film.tile_count(); ++tile) {
+        const std::vector<std::uint8_t> doublings = film.doublings(tile);
+        const auto has_base = [&](std::uint8_t n) { return n >= base && n < 32; };
+        if (doublings.empty() || !std::ranges::all_of(doublings, has_base)) {
+            scheduler.give_up({tile, {0, base}, "no node could render it before the master was restarted"});
+            continue;
+        }
+        scheduler.restored(tile, {0, base});
+        for (const std::uint8_t n : doublings)
+            further += (std::uint64_t{1} << n) - session::StopRule::AdaptiveBase;
+    }
+    scheduler.restored_more(further);
+    if (std::vector<Round> rounds = remaining_rounds(step, film); !rounds.empty())
+        scheduler.begin_step(std::move(rounds));
+}
+
+}  // namespace
+
 void PassStarter::begin(Pass& pass, const PlanSettings& plan, const NodeRequirements& requirements,
-                        std::optional<TimePoint> deadline, std::vector<frame::FilmTile>&& blocks) {
+                        std::optional<TimePoint> deadline, EarlierFilm&& earlier) {
     Scheduler& scheduler = dispatcher.begin(pass.view, plan, requirements, deadline);
     pass.tiles = static_cast<std::uint32_t>(scheduler.tiles().size());
-    FrameAssembler assembler(scheduler.tiles(), pass.view.channels, plan.spp);
-    for (frame::FilmTile& block : blocks) {
+    const std::uint64_t most = plan.is_adaptive ? session::MaxSamplesPerPixel : plan.spp;
+    FrameAssembler assembler(scheduler.tiles(), pass.view.channels, most);
+    for (frame::FilmTile& block : earlier.blocks) {
         const frame::SampleBlock samples = block.block;
         const FrameAssembler::Result result = assembler.insert(std::move(block), {});
-        if (result.outcome == FrameAssembler::Outcome::Merged) scheduler.restored(result.tile, samples);
+        if (result.outcome == FrameAssembler::Outcome::Merged && earlier.steps == 0)
+            scheduler.restored(result.tile, samples);
     }
+    if (plan.is_adaptive && earlier.steps > 0) continue_step(scheduler, assembler, earlier.step);
     film.open(pass.view.id, pass.view.revision, std::move(assembler));
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "master/peers/encoded_scene.h"
+#include "master/render/adaptive/step.h"
 #include "master/render/frame_assembler.h"
 #include "master/render/output_reconstruction.h"
 #include "master/render/reconstruction.h"
@@ -58,6 +59,12 @@ struct CalibrationResult {
     std::uint64_t pixels = 0;
     double seconds = 0.0;
 };
+// What an adaptive pass needs next.
+struct StepDecision {
+    ViewId view;
+    std::uint64_t revision = 0;
+    Step step;
+};
 // A task of a rendering thread failed for a reason that is not in its input: most likely there was no memory for it.
 struct TaskFailure {
     std::string text;
@@ -65,7 +72,7 @@ struct TaskFailure {
 // An edit that was applied on another thread is done; see scene/authority_thread.h.
 struct EditDone {};
 using RenderOutput = std::variant<MergeReport, EncodedTile, FilmBlocks, Reconstructed, CalibrationResult,
-                                  OutputResult, EncodedScene, EditDone, TaskFailure>;
+                                  StepDecision, OutputResult, EncodedScene, EditDone, TaskFailure>;
 
 // Results of the threads that merge film and reconstruct pictures, for the event loop that owns the channel: each
 // result wakes it. Thread-safe.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "master/filter/catalog.h"
+#include "master/render/adaptive/noise.h"
 #include "master/render/view_request.h"
 
 namespace tessera::master {
@@ -21,6 +22,9 @@ const filter::Description* denoiser_of(const view::View& view) {
 
 void ViewMemory::add(const session::ViewRequest& request) {
     bytes_ += film_bytes(request.view);
+    if (request.stop.is_adaptive()) {  // a decision reads a copy of the film
+        bytes_ += film_bytes(request.view) + NoiseMap::BytesPerPixel * request.view.window.pixel_count();
+    }
     const filter::Description* denoiser = denoiser_of(request.view);
     if (denoiser == nullptr) return;
     const Rect& window = request.view.window;

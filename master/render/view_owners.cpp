@@ -75,7 +75,7 @@ void Views::restore(std::vector<wire::SavedView>&& saved, Version version, Hash1
             continue;
         if (request.reproducible && old.kind.empty()) continue;  // by which nodes is unknown
         view.films = old.films;
-        runner_.resume(view, std::move(old.blocks), old.kind, now);
+        runner_.resume(view, {std::move(old.blocks), old.steps, std::move(old.step)}, old.kind, now);
     }
 }
 

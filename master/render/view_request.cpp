@@ -75,6 +75,9 @@ std::string problem_of(const session::ViewRequest& request) {
     const session::StopRule& stop = request.stop;
     if (stop.spp == 0 || stop.spp > session::MaxSamplesPerPixel)
         return "samples per pixel are not between 1 and 2^31";
+    if (!(stop.noise >= 0.0 && stop.noise <= 1e6)) return "the noise to reach is not between 0 and 1e6";
+    if (stop.noise > 0.0 && request.frames == session::Frames::All)
+        return "only views that deliver their last picture can stop at a noise";
     if (request.name.size() > MaxName) return "the view's name is longer than 128 bytes";
     if (request.tile != 0 && request.tile < SmallestTile) return "tiles must be at least 8 pixels wide";
     const auto filter = filter::parse_choice(view.filter, filter::catalog());
@@ -110,6 +113,13 @@ void complete(view::View& view) {
     if (view.transparent_background) view.channels.insert(frame::Channel::Alpha);
     const view::PathClass wanted = filter->entry->description.path_class;
     if (wanted != view::PathClass::Indirect) view.path_class = wanted;
+}
+
+void complete(session::ViewRequest& request) {
+    complete(request.view);
+    if (!request.stop.is_adaptive()) return;
+    request.view.channels.insert(frame::Channel::Radiance);
+    request.view.channels.insert(frame::Channel::BlockVariance);
 }
 
 view::View feature_view(const view::View& view) {

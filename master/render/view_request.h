@@ -21,6 +21,8 @@ std::string why_unavailable(const view::View& view);
 
 // Adds what the view's filter needs: channels, and the path class where the filter is made for one.
 void complete(view::View& view);
+// The same, and what its stop rule needs.
+void complete(session::ViewRequest& request);
 
 // What the time from the film to the encoded picture depends on (time_budget.h).
 std::string cost_key(const session::ViewRequest& request);

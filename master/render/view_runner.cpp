@@ -25,8 +25,7 @@ void ViewRunner::restart(ViewState& view, TimePoint now) {
     wait_for_nodes(view, now);
 }
 
-void ViewRunner::resume(ViewState& view, std::vector<frame::FilmTile>&& blocks, const std::string& kind,
-                        TimePoint now) {
+void ViewRunner::resume(ViewState& view, EarlierFilm&& earlier, const std::string& kind, TimePoint now) {
     view.restart_wanted = false;
     ++view.revision;
     view.camera_revision = view.asked_revision;
@@ -36,10 +35,11 @@ void ViewRunner::resume(ViewState& view, std::vector<frame::FilmTile>&& blocks, 
                 .without_nodes_since = now,
                 .kind = kind,
                 .cost_key = cost_key(view.request),
+                .steps = earlier.steps,
                 .bytes_before = views_.bytes_at_start};
     view.passes = passes_of(view);
     view.current = view.passes.size() - 1;
-    begin_pass(view, std::move(blocks));
+    begin_pass(view, std::move(earlier));
 }
 
 void ViewRunner::wait_for_nodes(ViewState& view, TimePoint now) {
@@ -65,39 +65,6 @@ void ViewRunner::wait_for_nodes(ViewState& view, TimePoint now) {
             (enough ? " nodes are ready, and the others do not receive the scene: see the log of their master"
                     : " nodes are ready: start more nodes or ask for fewer with --wait-nodes"),
         now);
-}
-
-// True when the time of filter and encoding is known; otherwise requests a calibration.
-bool ViewRunner::budget_is_planned(ViewState& view, TimePoint now) {
-    const session::StopRule& stop = view.request.stop;
-    Run& run = view.run;
-    if (!stop.has_budget()) {
-        run.deadline = stop.deadline(now, now, {});
-        return true;
-    }
-    if (!run.ready_since) run.ready_since = now;
-    const auto predicted = time_budget_.predict(run.cost_key, view.request.view.window.pixel_count());
-    if (!predicted) {
-        view::View calibration = view.request.view;
-        calibration.id = view.id;
-        if (!run.calibrating) passes_.film.calibrate(calibration, view.request.picture);
-        run.calibrating = true;
-        run.phase = Phase::Syncing;
-        return false;
-    }
-    run.predicted_seconds = *predicted;
-    const auto after = std::chrono::duration_cast<Duration>(std::chrono::duration<double>(*predicted));
-    run.deadline = stop.deadline(*run.ready_since, now, after);
-    return true;
-}
-
-// If the budget is too small for two samples per pixel: renders fewer pixels, and features for upsampling.
-std::uint32_t ViewRunner::scale_that_fits(const ViewState& view, TimePoint now) const {
-    if (!view.request.stop.adapts_size || !view.run.deadline) return 1;
-    constexpr double LeastSamples = 2.5;  // 2, and a margin for units that are cancelled at the deadline
-    return master::scale_that_fits(
-        view.request.view.window.pixel_count(), seconds(*view.run.deadline - now),
-        passes_.dispatcher.prospects(view.request.view, requirements(view)).samples_per_second, LeastSamples);
 }
 
 void ViewRunner::begin_rendering(ViewState& view, TimePoint now) {
@@ -135,15 +102,20 @@ PlanSettings ViewRunner::plan_of(const ViewState& view) const {
     // with a budget the filter needs a variance, which takes 2.
     if (pass.kind == Pass::Kind::Picture && !view.shows_all())
         plan.first_level = !view.run.deadline ? 2u : view.request.stop.has_budget() ? 1u : 0u;
+    if (pass.kind == Pass::Kind::Picture && view.request.stop.is_adaptive()) {
+        plan.is_adaptive = true;
+        plan.spp = session::StopRule::AdaptiveBase;
+    }
     // No picture is shown before the end.
     if (!view.shows_all() && !view.run.deadline) plan.hold_film = std::chrono::seconds(2);
     return plan;
 }
 
-void ViewRunner::begin_pass(ViewState& view, std::vector<frame::FilmTile>&& blocks) {
-    passes_.begin(view.pass(), plan_of(view), requirements(view), view.run.deadline, std::move(blocks));
-    // What failed in a coarse pass would fail again, and cost more nodes.
+void ViewRunner::begin_pass(ViewState& view, EarlierFilm&& earlier) {
+    passes_.begin(view.pass(), plan_of(view), requirements(view), view.run.deadline, std::move(earlier));
     Scheduler& scheduler = *passes_.dispatcher.find(view.pass().view.id);
+    view.run.samples_expected = scheduler.merged_samples() + scheduler.remaining_samples();
+    // What failed in a coarse pass would fail again, and cost more nodes.
     for (std::uint32_t tile = 0; tile < scheduler.tiles().size(); ++tile) {
         const Rect rect = in_full_size(view, view.pass(), scheduler.tiles()[tile]);
         for (const session::FailedTile& failed : view.failed_tiles) {
@@ -238,6 +210,7 @@ void ViewRunner::advance_picture(ViewState& view, TimePoint now) {
                 now);
         }
     }
+    if (!run.outcome && view.request.stop.is_adaptive() && scheduler.paused()) request_step(view);
     const bool is_settled = scheduler.idle() || now - run.outcome_at > settings_.stop_grace;
     if (run.outcome && !run.is_over() && is_settled && !scheduler.is_merging()) return finish(view, now);
     if (is_whole) show(view, now);

@@ -50,8 +50,7 @@ class ViewRunner {
 
     void restart(ViewState& view, TimePoint now);
     // Begins with the last pass and its existing film; of nodes of `kind`, if the view is reproducible.
-    void resume(ViewState& view, std::vector<frame::FilmTile>&& blocks, const std::string& kind,
-                TimePoint now);
+    void resume(ViewState& view, EarlierFilm&& earlier, const std::string& kind, TimePoint now);
     // Called when time has passed or samples have arrived.
     void advance(ViewState& view, TimePoint now);
     void took(ViewState& view, const MergeReport& report, Dispatcher::Taken taken, TimePoint now);
@@ -63,6 +62,7 @@ class ViewRunner {
 
     void take(Reconstructed&& made, TimePoint now);
     void take(const CalibrationResult& calibration);
+    void take(ViewState& view, StepDecision&& decision, TimePoint now);
 
     // Notifies the owner once that the view is waiting for nodes.
     void notify_waiting(ViewState& view, TimePoint now);
@@ -77,10 +77,11 @@ class ViewRunner {
     bool budget_is_planned(ViewState& view, TimePoint now);
     std::uint32_t scale_that_fits(const ViewState& view, TimePoint now) const;
     void begin_rendering(ViewState& view, TimePoint now);
-    void begin_pass(ViewState& view, std::vector<frame::FilmTile>&& blocks = {});
+    void begin_pass(ViewState& view, EarlierFilm&& earlier = {});
     PlanSettings plan_of(const ViewState& view) const;
     void advance_to_next_pass(ViewState& view, TimePoint now);
     void advance_picture(ViewState& view, TimePoint now);
+    void request_step(ViewState& view);
     bool drops_test_patterns(ViewState& view);
     void observe(ViewState& view, TimePoint now);
     void collect_failed_tiles(ViewState& view);

@@ -1,5 +1,7 @@
 #include "master/render/view_saver.h"
 
+#include "master/render/adaptive/saved_step.h"
+
 namespace tessera::master {
 
 // The scheduler of the last pass, if that is the current one.
@@ -23,6 +25,8 @@ void ViewSaver::save(Hash128 scene_hash) {
                  .blocks = {}};
         const Scheduler* pass = accumulating(view);
         if (pass == nullptr || pass->merged_samples() == 0) continue;
+        saved.steps = view.run.steps;
+        if (saved.steps > 0) saved.step = saved_step(pass->rounds(), pass->tiles());
         saving_->revisions[id] = view.revision;
         saving_->waiting.insert(view.pass().view.id);
         passes_.film.copy(view.pass().view.id);

@@ -56,6 +56,10 @@ struct Run {
     std::map<NodeId, session::NodeSummary> nodes;  // all that took part, including disconnected ones
     session::UnitCounts units;                     // of the current pass
     std::uint64_t rays = 0, nonfinite_samples = 0;
+    std::uint32_t steps = 0;   // of an adaptive picture
+    bool is_deciding = false;  // the next one
+    double noise = 0.0;        // as of the last decision; 0: unknown
+    std::uint64_t samples_expected = 0;
     session::WireBytes bytes_before;  // the master's counters at the start
 
     bool is_rendering() const { return phase == session::Phase::Rendering; }

@@ -33,7 +33,12 @@ session::ViewProgress progress_of(const ViewState& view, std::uint32_t nodes) {
         .phase = view.run.phase, .rays = view.run.rays, .nodes = nodes, .elapsed = {}};
     const view::View& last = view.passes.empty() ? view.request.view : view.passes.back().view;
     progress.samples = view.run.samples;
-    progress.samples_expected = last.window.pixel_count() * view.request.stop.max_samples();
+    const std::uint64_t pixels = last.window.pixel_count();
+    progress.samples_expected = pixels * view.request.stop.max_samples();
+    if (view.request.stop.is_adaptive())
+        progress.samples_expected =
+            std::max(view.run.samples_expected, pixels * session::StopRule::AdaptiveBase);
+    progress.noise = view.run.noise;
     if (!view.passes.empty()) progress.elapsed = view.run.seen_at - view.run.rendering_since;
     return progress;
 }
@@ -50,7 +55,8 @@ session::ViewSummary summary_of(const ViewState& view, const SceneFacts& facts,
         .nonfinite_samples = run.nonfinite_samples,
         .triangles = facts.triangles,
         .instances = facts.instances,
-        .lights = facts.lights};
+        .lights = facts.lights,
+        .noise = run.noise};
     if (!view.passes.empty()) {
         done.seconds_render = seconds(*run.ended - run.rendering_since);
         done.samples = run.samples;

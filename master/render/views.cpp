@@ -52,10 +52,11 @@ std::string Views::share(SessionId session, std::uint64_t number, const session:
 std::string Views::open(const ViewOwner& owner, std::uint64_t number, session::ViewRequest request,
                         Version version, TimePoint now) {
     if (std::string problem = problem_of(request); !problem.empty()) return problem;
-    view::View completed = request.view;
+    session::ViewRequest completed = request;
     complete(completed);
-    if (request.film && request.frames == session::Frames::All && film_bytes(completed) > MaxFilmBytes) {
-        return "the statistics of this view have " + std::to_string(film_bytes(completed) >> 20) +
+    const std::uint64_t bytes = film_bytes(completed.view);
+    if (request.film && request.frames == session::Frames::All && bytes > MaxFilmBytes) {
+        return "the statistics of this view have " + std::to_string(bytes >> 20) +
                " MiB a frame, more than 128: ask for a picture, fewer channels or a smaller window";
     }
     if (request.name.empty()) request.name = name_of_unnamed(owner, number);
@@ -111,7 +112,7 @@ ViewState* Views::find_or_add(const ViewOwner& owner, std::uint64_t number, cons
 void Views::change(ViewState& view, session::ViewRequest&& request, Version version, bool again,
                    TimePoint now) {
     const view::View asked = std::exchange(view.asked, request.view);
-    complete(request.view);
+    complete(request);
     request.view.id = view.request.view.id;
     request.view.revision = view.request.view.revision;
     const bool is_new = view.asked_revision == 0;
@@ -130,7 +131,8 @@ void Views::change(ViewState& view, session::ViewRequest&& request, Version vers
     if (same_terms && !again && !view.restart_wanted && differ_in_filter_alone(asked, view.asked)) {
         const FilterChange change = filter_change(view.request.view, request.view.filter);
         const bool goes_on = change.effect == FilterChange::Effect::Kept ||
-                             (change.effect == FilterChange::Effect::Widened && !view.run.outcome);
+                             (change.effect == FilterChange::Effect::Widened && !view.run.outcome &&
+                              !view.request.stop.is_adaptive());
         if (goes_on) {
             view.camera_revision = view.asked_revision;
             return runner_.change_filter(view, change, now);
@@ -236,6 +238,11 @@ std::string Views::set_filter(const SessionRecord& asker, const std::string& nam
     const bool has_features_first = !view.passes.empty() && !view.is_last_pass();
     if (has_features_first) refuse("the frame has just begun: try again in a moment");
     if (change.effect == FilterChange::Effect::Restarted) refuse(change.text);
+    if (change.effect == FilterChange::Effect::Widened && view.request.stop.is_adaptive()) {
+        refuse("filter '" + filter +
+               "' needs channels that this frame lacks, and one that stops at a noise gets no more of them: "
+               "start it with the filter");
+    }
     runner_.change_filter(view, change, now);
     return change.text;
 }
@@ -309,6 +316,8 @@ bool Views::take(RenderOutput& output, TimePoint now) {
         runner_.take(std::move(*made), now);
     } else if (const auto* calibration = std::get_if<CalibrationResult>(&output)) {
         runner_.take(*calibration);
+    } else if (auto* decision = std::get_if<StepDecision>(&output)) {
+        if (ViewState* view = table_.of_pass(decision->view)) runner_.take(*view, std::move(*decision), now);
     } else if (auto* film = std::get_if<FilmBlocks>(&output)) {
         if (!picks_.take(*film)) (void)saver_.take(std::move(*film));
     } else {

@@ -45,8 +45,14 @@ struct StopRule {
     Duration budget{0};      // not 0: time from the start to the encoded picture, filter included
     bool adapts_size =
         false;  // if the budget is too small for 2 samples per pixel: render at half or a quarter of the size
+    // Not 0: samples where they are needed until the unfiltered picture has this estimated sqrt(relMSE); spp and times
+    // are upper bounds.
+    double noise = 0.0;
 
     bool has_budget() const { return budget > Duration::zero(); }
+    // What every pixel gets before the first decision: fewer say too little.
+    static constexpr std::uint64_t AdaptiveBase = 16;
+    bool is_adaptive() const { return noise > 0.0 && max_samples() > AdaptiveBase; }
     bool has_clock() const { return has_budget() || time_limit > Duration::zero(); }
     // The maximum number of samples per pixel.
     std::uint64_t max_samples() const {
@@ -71,7 +77,8 @@ struct StopRule {
     friend bool operator==(const StopRule&, const StopRule&) = default;
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "spp", &StopRule::spp), row(2, "time_limit", &StopRule::time_limit),
-                          row(3, "budget", &StopRule::budget), row(4, "adapts_size", &StopRule::adapts_size));
+                          row(3, "budget", &StopRule::budget), row(4, "adapts_size", &StopRule::adapts_size),
+                          row(5, "noise", &StopRule::noise));
     }
 };
 

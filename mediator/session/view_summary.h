@@ -26,11 +26,13 @@ struct ViewProgress {
     std::uint64_t rays = 0;
     std::uint32_t nodes = 0;
     Duration elapsed{};  // since rendering began
+    double noise = 0.0;  // of an adaptive picture, at the last decision: sqrt(relMSE); 0: unknown
     static constexpr auto describe(auto row) {
         using Self = ViewProgress;
         return std::tuple(row(1, "phase", &Self::phase), row(2, "samples", &Self::samples),
                           row(3, "samples_expected", &Self::samples_expected), row(4, "rays", &Self::rays),
-                          row(5, "nodes", &Self::nodes), row(6, "elapsed", &Self::elapsed));
+                          row(5, "nodes", &Self::nodes), row(6, "elapsed", &Self::elapsed),
+                          row(7, "noise", &Self::noise));
     }
 };
 
@@ -137,6 +139,7 @@ struct ViewSummary {
     PictureSummary picture;
     std::uint64_t min_samples = 0, max_samples = 0;  // per pixel; with a picture
     std::vector<FailedTile> failed_tiles;            // the first ones
+    double noise = 0.0;                              // as in ViewProgress
     static constexpr auto describe(auto row) {
         using Self = ViewSummary;
         return std::tuple(
@@ -149,7 +152,8 @@ struct ViewSummary {
             row(12, "lights", &Self::lights), row(13, "nodes", &Self::nodes), row(14, "units", &Self::units),
             row(15, "wire_bytes", &Self::wire_bytes), row(16, "picture", &Self::picture),
             row(17, "min_samples", &Self::min_samples), row(18, "max_samples", &Self::max_samples),
-            row(19, "failed_tiles", &Self::failed_tiles, Limit{MaxFailedTiles}));
+            row(19, "failed_tiles", &Self::failed_tiles, Limit{MaxFailedTiles}),
+            row(20, "noise", &Self::noise));
     }
 };
 

@@ -17,7 +17,7 @@ Forecast::Forecast(const UnitLedger& ledger, std::span<const NodeCapacity> nodes
     std::ranges::sort(holders_, {}, &Holder::node);
     for (const auto& [id, unit] : ledger.open()) {
         const std::size_t index = unit.is_covered ? NotAwaited : awaited_.size();
-        const auto samples = static_cast<double>(unit.unit.block.count() * unit.unit.tile.pixel_count());
+        const auto samples = static_cast<double>(unit.unit.pixel_samples());
         for (const auto& [node, since] : unit.holders) {
             const double rate = balancer.rate(node);
             holder(node).items.push_back({index, since, rate > 0.0 ? samples / rate : 0.0, 0.0});

@@ -53,8 +53,9 @@ Plan::Plan(const PlanSettings& settings)
       tiles_(tile_grid(settings.window, settings.tile)),
       closed_(tiles_.size(), false),
       order_(tiles_.size()),
-      rounds_(doubling_rounds(settings.spp, settings.first_level)),
       remaining_samples_(settings.window.pixel_count() * settings.spp) {
+    for (const SampleBlock& block : doubling_rounds(settings.spp, settings.first_level))
+        rounds_.push_back({block, nullptr});
     std::iota(order_.begin(), order_.end(), 0u);
     const double middle_x = settings.window.x + 0.5 * settings.window.width;
     const double middle_y = settings.window.y + 0.5 * settings.window.height;
@@ -64,6 +65,38 @@ Plan::Plan(const PlanSettings& settings)
     };
     std::stable_sort(order_.begin(), order_.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return distance(a) < distance(b); });
+}
+
+void Plan::begin_step(std::vector<Round> rounds) {
+    rounds_ = std::move(rounds);
+    round_ = cursor_ = 0;
+    offset_ = 0;
+    remaining_samples_ = 0;
+    for (const Round& round : rounds_) {
+        for (std::uint32_t tile = 0; tile < tiles_.size(); ++tile) {
+            if (!closed_[tile])
+                remaining_samples_ += pixel_samples(tile, round.block.first, round.block.count());
+        }
+    }
+    skip_closed();
+}
+
+const RoundMask* Plan::mask(std::uint32_t tile, std::uint64_t sample) const {
+    const auto round = std::ranges::find_if(
+        rounds_, [&](const Round& one) { return one.block.first <= sample && sample < one.block.end(); });
+    return round != rounds_.end() && round->masks ? &(*round->masks)[tile] : nullptr;
+}
+
+std::uint64_t Plan::pixel_samples(std::uint32_t tile, std::uint64_t first, std::uint64_t count) const {
+    const RoundMask* some = mask(tile, first);
+    return count * (some != nullptr ? some->pixels : tiles_[tile].pixel_count());
+}
+
+std::uint64_t Plan::scaled(std::uint64_t max_count, std::uint32_t tile, std::uint64_t sample) const {
+    const RoundMask* some = mask(tile, sample);
+    const std::uint64_t least = std::max<std::uint64_t>(max_count, 1);
+    return some != nullptr ? std::max<std::uint64_t>(1, least * tiles_.front().pixel_count() / some->pixels)
+                           : least;
 }
 
 // `max_count`: of a unit. Shorter units than a fifth of that would be rendered before the next ones have crossed the
@@ -85,11 +118,11 @@ std::uint64_t Plan::claim_samples(const SampleBlock& round, std::uint64_t max_co
 std::optional<Plan::Claim> Plan::new_claim(std::uint64_t max_count, std::uint32_t nodes,
                                            std::uint32_t workers) {
     if (round_ == rounds_.size() || is_held()) return std::nullopt;
-    const SampleBlock round = rounds_[round_];
+    const SampleBlock round = rounds_[round_].block;
     const std::uint32_t tile = order_[cursor_];
     const std::uint64_t first = round.first + offset_;
-    const SampleBlock block =
-        first_piece(first, round.end(), claim_samples(round, max_count, nodes, workers));
+    const std::uint64_t unit = scaled(max_count, tile, first);
+    const SampleBlock block = first_piece(first, round.end(), claim_samples(round, unit, nodes, workers));
     advance(block.count());
     return Claim{tile, block.first, block.end()};
 }
@@ -100,13 +133,13 @@ std::optional<Plan::Chunk> Plan::next_returned(std::uint64_t max_count,
     if (found == returned_.end()) return std::nullopt;
     Chunk chunk = *found;
     returned_.erase(found);
-    while (chunk.block.count() > std::max<std::uint64_t>(max_count, 1)) {
+    while (chunk.block.count() > scaled(max_count, chunk.tile, chunk.block.first)) {
         chunk.block.level -= 1;
         Chunk rest = chunk;
         rest.block = chunk.block.sibling();
         returned_.push_front(std::move(rest));
     }
-    remaining_samples_ -= pixel_samples(chunk.tile, chunk.block.count());
+    remaining_samples_ -= pixel_samples(chunk.tile, chunk.block.first, chunk.block.count());
     return chunk;
 }
 
@@ -120,11 +153,11 @@ std::optional<Plan::Chunk> Plan::next(NodeId node, std::uint64_t max_count, std:
     }
     Claim& claim = claimed->second;
     Chunk chunk{.tile = claim.tile,
-                .block = first_piece(claim.next, claim.end, std::max<std::uint64_t>(max_count, 1)),
+                .block = first_piece(claim.next, claim.end, scaled(max_count, claim.tile, claim.next)),
                 .trouble = nullptr};
     claim.next = chunk.block.end();
     if (claim.left() == 0) claims_.erase(claimed);
-    remaining_samples_ -= pixel_samples(chunk.tile, chunk.block.count());
+    remaining_samples_ -= pixel_samples(chunk.tile, chunk.block.first, chunk.block.count());
     return chunk;
 }
 
@@ -132,7 +165,7 @@ void Plan::give_back(const Chunk& chunk) {
     if (closed_[chunk.tile]) return;
     returned_.push_back(chunk);
     returned_.back().again = true;
-    remaining_samples_ += pixel_samples(chunk.tile, chunk.block.count());
+    remaining_samples_ += pixel_samples(chunk.tile, chunk.block.first, chunk.block.count());
 }
 
 void Plan::release_claim(NodeId node) {
@@ -165,28 +198,29 @@ void Plan::close_tile(std::uint32_t tile) {
     closed_[tile] = true;
     std::erase_if(returned_, [&](const Chunk& chunk) {
         if (chunk.tile != tile) return false;
-        remaining_samples_ -= pixel_samples(tile, chunk.block.count());
+        remaining_samples_ -= pixel_samples(tile, chunk.block.first, chunk.block.count());
         return true;
     });
     std::erase_if(claims_, [&](const auto& entry) {
         if (entry.second.tile != tile) return false;
-        remaining_samples_ -= pixel_samples(tile, entry.second.left());
+        remaining_samples_ -= pixel_samples(tile, entry.second.next, entry.second.left());
         return true;
     });
     // What has not been claimed yet.
     const auto at = static_cast<std::size_t>(std::find(order_.begin(), order_.end(), tile) - order_.begin());
     for (std::size_t round = round_; round < rounds_.size(); ++round) {
-        std::uint64_t left = rounds_[round].count();
+        const SampleBlock& block = rounds_[round].block;
+        std::uint64_t left = block.count();
         if (round == round_ && at < cursor_) continue;
         if (round == round_ && at == cursor_) left -= offset_;
-        remaining_samples_ -= pixel_samples(tile, left);
+        remaining_samples_ -= pixel_samples(tile, block.first, left);
     }
     skip_closed();
 }
 
 void Plan::advance(std::uint64_t count) {
     offset_ += count;
-    if (offset_ == rounds_[round_].count()) next_tile();
+    if (offset_ == rounds_[round_].block.count()) next_tile();
     skip_closed();
 }
 
@@ -198,19 +232,30 @@ void Plan::next_tile() {
 }
 
 void Plan::skip_closed() {
-    while (round_ != rounds_.size() && closed_[order_[cursor_]]) next_tile();
+    while (round_ != rounds_.size()) {
+        const std::uint32_t tile = order_[cursor_];
+        const auto& masks = rounds_[round_].masks;
+        if (!closed_[tile] && (!masks || (*masks)[tile].pixels > 0)) return;
+        next_tile();
+    }
 }
 
 std::uint64_t Plan::round_samples() const {
-    return round_ == rounds_.size() ? 0 : rounds_[round_].count() * settings_.window.pixel_count();
+    if (round_ == rounds_.size()) return 0;
+    const Round& round = rounds_[round_];
+    if (!round.masks) return round.block.count() * settings_.window.pixel_count();
+    std::uint64_t pixels = 0;
+    for (const RoundMask& mask : *round.masks) pixels += mask.pixels;
+    return round.block.count() * pixels;
 }
 
 void Plan::deal_round_in_eighths() {
-    const SampleBlock round = rounds_[round_];
-    const std::uint32_t level = round.level - std::min(round.level, 3u);
-    std::vector<SampleBlock> eighths;
-    for (std::uint64_t first = round.first; first < round.end(); first += std::uint64_t{1} << level) {
-        eighths.push_back({first, level});
+    const Round round = rounds_[round_];
+    const std::uint32_t level = round.block.level - std::min(round.block.level, 3u);
+    std::vector<Round> eighths;
+    for (std::uint64_t first = round.block.first; first < round.block.end();
+         first += std::uint64_t{1} << level) {
+        eighths.push_back({{first, level}, round.masks});
     }
     const auto at = rounds_.erase(rounds_.begin() + static_cast<std::ptrdiff_t>(round_));
     rounds_.insert(at, eighths.begin(), eighths.end());

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "master/render/schedule/unit_trouble.h"
@@ -25,9 +26,22 @@ struct PlanSettings {
     // How long nodes may hold film back, to merge it with that of further pieces of a claim.
     Duration hold_film = std::chrono::milliseconds(100);
     std::uint32_t max_crashes = 2;  // nodes that samples may cost before they are left out, see UnitTrouble
+    bool is_adaptive = false;       // after the last round there may be a step, see Plan::begin_step()
 };
 
-// The remaining work of one frame. Rounds double the number of samples (design 1.7); within a round tiles are
+// Which pixels of a tile get the samples of a round.
+struct RoundMask {
+    std::string bits;          // as view::WorkUnit::mask
+    std::uint32_t pixels = 0;  // 0: none
+};
+
+struct Round {
+    frame::SampleBlock block;
+    std::shared_ptr<const std::vector<RoundMask>> masks;  // by tile; null: all pixels of all tiles
+};
+
+// The remaining work of one frame. Rounds double the number of samples (design 1.7), of all pixels or of those that need
+// it; within a round tiles are
 // ordered from the centre outwards. A node claims a block of samples of one tile and gets it piece by piece: it merges
 // consecutive pieces before it sends their film, so a claim costs the network one film, however short its pieces are.
 // The policy says how large claims are:
@@ -64,6 +78,9 @@ class Plan {
     void give_back(const Chunk& chunk);
 
     const std::map<NodeId, Claim>& claims() const { return claims_; }
+    std::uint64_t pixel_samples(const Claim& claim) const {
+        return pixel_samples(claim.tile, claim.next, claim.left());
+    }
     // The node gets no more pieces of its claim: others will.
     void release_claim(NodeId node);
     const std::deque<Chunk>& returned() const { return returned_; }
@@ -75,10 +92,19 @@ class Plan {
     void close_tile(std::uint32_t tile);
     bool is_closed(std::uint32_t tile) const { return closed_[tile]; }
 
+    // An adaptive plan: goes on with these rounds, whose blocks are disjoint. Only when paused.
+    void begin_step(std::vector<Round> rounds);
+    void finish_steps() { settings_.is_adaptive = false; }
+    const std::vector<Round>& rounds() const { return rounds_; }  // all, or those of the current step
+    // The mask of a piece of a current round; null: all pixels.
+    const RoundMask* mask(std::uint32_t tile, std::uint64_t sample) const;
+
     // Rounds that begin with this sample or a later one wait until the limit is raised.
     void hold_at(std::uint64_t sample) { hold_ = sample; }
 
-    bool exhausted() const { return returned_.empty() && claims_.empty() && round_ == rounds_.size(); }
+    bool exhausted() const {
+        return !settings_.is_adaptive && returned_.empty() && claims_.empty() && round_ == rounds_.size();
+    }
     bool paused() const {
         return returned_.empty() && claims_.empty() && (round_ == rounds_.size() || is_held());
     }
@@ -91,22 +117,23 @@ class Plan {
     void deal_round_in_eighths();
 
   private:
-    bool is_held() const { return rounds_[round_].first >= hold_; }
+    bool is_held() const { return rounds_[round_].block.first >= hold_; }
+    // For tiles of the usual size with all pixels -> for these.
+    std::uint64_t scaled(std::uint64_t max_count, std::uint32_t tile, std::uint64_t sample) const;
     std::uint64_t claim_samples(const frame::SampleBlock& round, std::uint64_t max_count, std::uint32_t nodes,
                                 std::uint32_t workers) const;
     std::optional<Claim> new_claim(std::uint64_t max_count, std::uint32_t nodes, std::uint32_t workers);
     void advance(std::uint64_t count);
     void next_tile();
     void skip_closed();
-    std::uint64_t pixel_samples(std::uint32_t tile, std::uint64_t count) const {
-        return count * tiles_[tile].pixel_count();
-    }
+    // Of so many samples from `first` on.
+    std::uint64_t pixel_samples(std::uint32_t tile, std::uint64_t first, std::uint64_t count) const;
 
     PlanSettings settings_;
     std::vector<Rect> tiles_;
     std::vector<bool> closed_;          // by tile
     std::vector<std::uint32_t> order_;  // tile indices, centre first
-    std::vector<frame::SampleBlock> rounds_;
+    std::vector<Round> rounds_;
     std::size_t round_ = 0, cursor_ = 0;
     std::uint64_t offset_ = 0;        // samples of rounds_[round_] already claimed for order_[cursor_]
     std::map<NodeId, Claim> claims_;  // none is empty

@@ -39,12 +39,14 @@ Scheduler::Scheduler(const PlanSettings& plan, ViewId view, std::uint64_t revisi
       ledger_(plan_.tiles(), first_unit, plan.max_crashes) {}
 
 view::WorkUnit Scheduler::make_unit(const Plan::Chunk& chunk) const {
+    const RoundMask* mask = plan_.mask(chunk.tile, chunk.block.first);
     return {.id = ledger_.next_unit(),
             .view = view_,
             .revision = revision_,
             .version = version_,
             .tile = plan_.tiles()[chunk.tile],
-            .block = chunk.block};
+            .block = chunk.block,
+            .mask = mask != nullptr ? mask->bits : ""};
 }
 
 // ---- dealing ----
@@ -198,7 +200,7 @@ bool Scheduler::take_over_a_claim(const NodeCapacity& node, Turn& turn) {
             plan_.release_claim(holder);
             return true;
         }
-        const auto left = static_cast<double>(claim.left() * plan_.tiles()[claim.tile].pixel_count());
+        const auto left = static_cast<double>(plan_.pixel_samples(claim));
         const double duration = left / (turn.balancer.assumed_rate(holder) * capacity->workers);
         const double mine = 0.5 * left / (turn.balancer.assumed_rate(node.node) * node.workers);
         if (duration < min_seconds || mine > duration || duration <= latest) continue;
@@ -254,7 +256,7 @@ std::optional<Assignment> Scheduler::duplicate(
         // have died of them as well, which is noticed with the next heartbeat.
         const std::size_t lives = ledger_.lives(unit->trouble);
         if (lives > 1 || (lives == 1 && !all_are_slow)) continue;
-        const std::uint64_t samples = unit->unit.block.count() * unit->unit.tile.pixel_count();
+        const std::uint64_t samples = unit->unit.pixel_samples();
         const double mine = Forecast::expected_seconds(turn.balancer, node, samples);
         if (done <= mine + gain || !may_be(awaited[i], mine)) continue;
         best = i;
@@ -275,11 +277,17 @@ void Scheduler::cut_round_for_deadline(const Turn& turn) {
     if (needed > seconds(*deadline_ - turn.now)) plan_.deal_round_in_eighths();
 }
 
+void Scheduler::begin_step(std::vector<Round> rounds) {
+    if (rounds.empty()) return plan_.finish_steps();
+    ledger_.begin_step();
+    plan_.begin_step(std::move(rounds));
+}
+
 // ---- ends ----
 
 Admission Scheduler::admit(NodeId node, const ArrivingFilm& film) {
     Admission admission = ledger_.admit(node, film);
-    if (!admission.problem.empty()) return admission;
+    if (!admission.problem.empty() || admission.use == Admission::Use::Drop) return admission;
     if (sealed_ && !ledger_.samples(admission.tile).covers(film.block)) {
         admission.use = Admission::Use::Drop;
     } else {
@@ -332,9 +340,9 @@ void Scheduler::give_up(const TileFailure& tile) {
 }
 
 std::uint32_t Scheduler::tiles_without_samples() const {
-    const auto failed = std::count_if(
-        failed_tiles_.begin(), failed_tiles_.end(),
-        [&](const TileFailure& tile) { return ledger_.samples(tile.tile).sample_count() == 0; });
+    const auto failed =
+        std::count_if(failed_tiles_.begin(), failed_tiles_.end(),
+                      [&](const TileFailure& tile) { return !ledger_.has_samples(tile.tile); });
     return ledger_.tiles_without_samples() - static_cast<std::uint32_t>(failed);
 }
 

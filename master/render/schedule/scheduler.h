@@ -56,6 +56,9 @@ class Scheduler {
     // Film that existed before the pass began.
     void restored(std::uint32_t tile, const frame::SampleBlock& block) { (void)merged({}, tile, block); }
 
+    // The same of an adaptive pass, further samples of some pixels.
+    void restored_more(std::uint64_t pixel_samples) { ledger_.add_arrived(pixel_samples); }
+
     // The node will send no (more) film of the unit: missing samples go back to the plan. False: it does not hold it.
     bool end(UnitId unit, NodeId node, Fate fate);
     // The same for all units of which this film of the node has samples: it was admitted, but not merged.
@@ -84,12 +87,16 @@ class Scheduler {
     // Samples from this one on are not dealt until the limit is raised; a power of two. paused(): all before
     // it is merged.
     void hold_at(std::uint64_t sample) { plan_.hold_at(sample); }
+    // An adaptive plan, when paused(): goes on with these rounds, or is complete without any.
+    void begin_step(std::vector<Round> rounds);
     bool paused() const { return plan_.paused() && ledger_.is_idle(); }
 
     bool complete() const { return plan_.exhausted() && ledger_.is_idle(); }
     bool idle() const { return ledger_.is_idle(); }
     const std::vector<Rect>& tiles() const { return plan_.tiles(); }
+    std::span<const Round> rounds() const { return plan_.rounds(); }
     std::uint64_t merged_samples() const { return ledger_.arrived_samples(); }  // pixel samples
+    std::uint64_t remaining_samples() const { return plan_.remaining_samples(); }
     // Those that still may get some.
     std::uint32_t tiles_without_samples() const;
     // Once the pass is complete or cancelled, units in flight count as cancelled.

@@ -34,10 +34,6 @@ bool intersect(const SampleBlock& a, const SampleBlock& b) {
     return a.contains(b) || b.contains(a);
 }
 
-std::uint64_t pixel_samples(const view::WorkUnit& unit) {
-    return unit.block.count() * unit.tile.pixel_count();
-}
-
 bool holds_or_held(const UnitLedger::Unit& unit, NodeId node) {
     return unit.holders.contains(node) ||
            std::find(unit.past_holders.begin(), unit.past_holders.end(), node) != unit.past_holders.end();
@@ -52,6 +48,7 @@ UnitLedger::UnitLedger(std::vector<Rect> tiles, UnitId first_unit, std::size_t m
       open_of_tile_(tiles_.size()),
       former_of_tile_(tiles_.size()),
       arrived_(tiles_.size()),
+      has_samples_(tiles_.size(), false),
       tiles_without_samples_(static_cast<std::uint32_t>(tiles_.size())) {}
 
 // ---- dealing ----
@@ -60,7 +57,7 @@ void UnitLedger::hold(UnitId id, Unit& unit, NodeId node, TimePoint now) {
     unit.holders.emplace(node, now);
     Held& held = by_node_[node];
     held.units.insert(id);
-    held.samples += pixel_samples(unit.unit);
+    held.samples += unit.unit.pixel_samples();
     ++in_flight_;
 }
 
@@ -102,6 +99,25 @@ void UnitLedger::for_each_of(NodeId node, std::uint32_t tile, const Visit& visit
     }
 }
 
+void UnitLedger::begin_step() {
+    arrived_.assign(tiles_.size(), {});
+    step_begin_ = next_unit();
+}
+
+// How many pixels of the tile get these samples.
+std::size_t UnitLedger::pixel_count(std::uint32_t tile, const SampleBlock& block) const {
+    const auto has_part = [&](UnitId id, const Unit& unit) {
+        return id >= step_begin_ && intersect(unit.unit.block, block);
+    };
+    for (const UnitId id : open_of_tile_[tile]) {
+        if (const Unit& unit = open_.at(id); has_part(id, unit)) return unit.unit.pixel_count();
+    }
+    for (const UnitId id : former_of_tile_[tile]) {
+        if (const Unit& unit = former_.at(id); has_part(id, unit)) return unit.unit.pixel_count();
+    }
+    return tiles_[tile].pixel_count();
+}
+
 Admission UnitLedger::admit(NodeId node, const ArrivingFilm& film) {
     if (!was_dealt_to(node, film.unit))
         return {.problem = "film of a unit that was not dealt to it", .replaceable = {}};
@@ -109,13 +125,18 @@ Admission UnitLedger::admit(NodeId node, const ArrivingFilm& film) {
     if (film.rect != tiles_[tile])
         return {.problem = "film of another tile than that of its unit", .replaceable = {}};
     Admission admission{.problem = {}, .tile = tile, .replaceable = {}};
+    if (film.unit < step_begin_) {
+        admission.use = Admission::Use::Drop;  // late
+        return admission;
+    }
     if (arrived_[tile].covers(film.block)) return admission;  // late; it is compared with what is there
     BlockSet held;
     for_each_of(node, tile, [&](Unit& unit) {
-        if (unit.unit.version == film.version) held.insert(unit.unit.block);
+        if (unit.unit.version == film.version && unit.unit.mask == film.mask) held.insert(unit.unit.block);
     });
     if (!held.covers(film.block)) {
-        admission.problem = "film of samples, or of a version of the scene, that were not dealt to it";
+        admission.problem =
+            "film of samples or pixels, or of a version of the scene, that were not dealt to it";
         return admission;
     }
     for_each_of(node, tile, [&](Unit& unit) {
@@ -130,9 +151,11 @@ std::vector<Cancellation> UnitLedger::arrived(NodeId node, std::uint32_t tile, c
     std::vector<Cancellation> cancellations;
     BlockSet& there = arrived_.at(tile);
     const std::uint64_t before = there.sample_count();
+    const std::size_t pixels = pixel_count(tile, block);
     there.insert(block);
-    if (before == 0) --tiles_without_samples_;
-    arrived_samples_ += (there.sample_count() - before) * tiles_[tile].pixel_count();
+    if (!has_samples_[tile]) --tiles_without_samples_;
+    has_samples_[tile] = true;
+    arrived_samples_ += (there.sample_count() - before) * pixels;
     const std::vector<UnitId> units = open_of_tile_[tile];
     for (const UnitId id : units) {
         const auto entry = open_.find(id);
@@ -164,7 +187,7 @@ void UnitLedger::close(std::map<UnitId, Unit>::iterator entry, NodeId node, Fate
         count(counts_, fate);
         Held& held = by_node_[node];
         held.units.erase(id);
-        held.samples -= pixel_samples(unit.unit);
+        held.samples -= unit.unit.pixel_samples();
         --in_flight_;
         unit.past_holders.push_back(node);
         if (observer_) observer_(unit.unit, node, fate);

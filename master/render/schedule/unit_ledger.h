@@ -45,6 +45,7 @@ struct ArrivingFilm {
     Version version;
     Rect rect;
     frame::SampleBlock block;
+    std::string mask;  // as WorkUnit's
 };
 
 struct Admission {
@@ -106,6 +107,11 @@ class UnitLedger {
               NodeId node, TimePoint now);
     void deal_again(UnitId unit, NodeId node, TimePoint now);
 
+    void add_arrived(std::uint64_t pixel_samples) { arrived_samples_ += pixel_samples; }
+
+    // Everything dealt so far has arrived; the same samples may be dealt again, for other pixels.
+    void begin_step();
+
     Admission admit(NodeId node, const ArrivingFilm& film);
     // Film of the node was merged, or was there already. Returns the holders whose work is no longer needed.
     std::vector<Cancellation> arrived(NodeId node, std::uint32_t tile, const frame::SampleBlock& block);
@@ -149,7 +155,8 @@ class UnitLedger {
     };
     Load load(NodeId node) const;  // all that it holds
     std::uint32_t unexplained_failures(NodeId node) const;
-    const BlockSet& samples(std::uint32_t tile) const { return arrived_[tile]; }
+    const BlockSet& samples(std::uint32_t tile) const { return arrived_[tile]; }  // of the current step
+    bool has_samples(std::uint32_t tile) const { return has_samples_[tile]; }
     bool is_idle() const { return uncovered_ == 0; }                    // no samples are awaited
     std::uint64_t arrived_samples() const { return arrived_samples_; }  // pixel samples
     std::uint32_t tiles_without_samples() const { return tiles_without_samples_; }
@@ -161,6 +168,7 @@ class UnitLedger {
         NodeId node;  // its first holder
         std::uint32_t tile = 0;
     };
+    std::size_t pixel_count(std::uint32_t tile, const frame::SampleBlock& block) const;
     bool was_dealt_to(NodeId node, UnitId unit) const;
     void hold(UnitId id, Unit& unit, NodeId node, TimePoint now);
     void close(std::map<UnitId, Unit>::iterator entry, NodeId node, Fate fate);
@@ -185,7 +193,9 @@ class UnitLedger {
         std::uint64_t samples = 0;
     };
     std::map<NodeId, Held> by_node_;
-    std::vector<BlockSet> arrived_;  // by tile
+    std::vector<BlockSet> arrived_;  // by tile, of the current step
+    std::vector<bool> has_samples_;  // by tile
+    UnitId step_begin_{};            // its first unit
     std::set<std::shared_ptr<const UnitTrouble>> unexplained_;
     std::set<NodeId> lost_;  // and nothing explains it yet
     std::set<NodeId> survivors_;

@@ -156,6 +156,80 @@ TEST(Plan, AClosedTileGetsNoMoreSamples) {
     EXPECT_EQ(plan.remaining_samples(), 0u);
 }
 
+// Steps of an adaptive plan: each pixel of a mask gets each of its samples once, whatever is given back or taken over.
+TEST(Plan, AStepDealsTheSamplesOfItsMasksOnce) {
+    CounterRandom random(12);
+    Plan plan({.window = {0, 0, 70, 50}, .tile = 32, .spp = 16, .is_adaptive = true});
+    const std::size_t tiles = plan.tiles().size();
+    std::uint64_t dealt = 0;
+    const auto deal_all = [&](std::vector<BlockSet>& sets) {
+        for (int misses = 0; misses < 100;) {
+            if (random.below(10) == 0)
+                plan.take_over(NodeId{1 + random.below(3)}, NodeId{1 + random.below(3)});
+            const std::uint64_t count = 1 + random.below(20);
+            auto chunk = plan.next_returned(count, [](const Plan::Chunk&) { return true; });
+            if (!chunk) chunk = plan.next(NodeId{1 + random.below(3)}, count, 3, 6);
+            if (!chunk) {
+                ++misses;
+                continue;
+            }
+            misses = 0;
+            const RoundMask* mask = plan.mask(chunk->tile, chunk->block.first);
+            if (mask != nullptr) ASSERT_GT(mask->pixels, 0u);
+            if (random.below(6) == 0) {
+                plan.give_back(*chunk);
+                continue;
+            }
+            EXPECT_TRUE(sets[chunk->tile].missing_in(chunk->block) == std::vector{chunk->block});
+            sets[chunk->tile].insert(chunk->block);
+            dealt += chunk->block.count() *
+                     (mask != nullptr ? mask->pixels : plan.tiles()[chunk->tile].pixel_count());
+        }
+        EXPECT_TRUE(plan.paused());
+        EXPECT_FALSE(plan.exhausted());
+        EXPECT_EQ(plan.remaining_samples(), 0u);
+    };
+    std::vector<BlockSet> base(tiles);
+    deal_all(base);
+    EXPECT_EQ(dealt, 70u * 50u * 16u);
+    for (std::uint32_t step = 0; step < 5; ++step) {
+        std::vector<Round> rounds;
+        std::uint64_t expected = 0;
+        for (std::uint32_t level = 4; level <= 4 + step; ++level) {
+            std::vector<RoundMask> masks(tiles);
+            for (RoundMask& mask : masks) {
+                if (random.below(3) == 0) continue;
+                mask = {"bits", static_cast<std::uint32_t>(1 + random.below(100))};
+                expected += mask.pixels * (std::uint64_t{1} << level);
+            }
+            rounds.push_back({{std::uint64_t{1} << level, level},
+                              std::make_shared<const std::vector<RoundMask>>(std::move(masks))});
+        }
+        plan.begin_step(rounds);
+        EXPECT_EQ(plan.remaining_samples(), expected);
+        dealt = 0;
+        std::vector<BlockSet> sets(tiles);
+        deal_all(sets);
+        EXPECT_EQ(dealt, expected);
+        for (std::uint32_t tile = 0; tile < tiles; ++tile) {
+            std::uint64_t samples = 0;
+            for (const Round& round : rounds)
+                samples += (*round.masks)[tile].pixels > 0 ? round.block.count() : 0;
+            EXPECT_EQ(sets[tile].sample_count(), samples);
+        }
+    }
+    plan.finish_steps();
+    EXPECT_TRUE(plan.exhausted());
+}
+
+TEST(Plan, UnitsOfFewPixelsHaveMoreSamples) {
+    Plan plan({.window = {0, 0, 32, 32}, .tile = 32, .spp = 16, .is_adaptive = true});
+    while (plan.next(NodeId{1}, 16, 1, 1)) {
+    }
+    plan.begin_step({{{256, 8}, std::make_shared<const std::vector<RoundMask>>(1, RoundMask{"bits", 64})}});
+    EXPECT_EQ(plan.next(NodeId{1}, 4, 1, 1)->block.count(), 64u) << "a sixteenth of the pixels";
+}
+
 TEST(Plan, ARoundInEighthsDealsAllTilesOfOneEighthFirst) {
     Plan plan(two_tiles(session::Policy::Tiled));
     ASSERT_TRUE(plan.at_round_start());

@@ -28,6 +28,23 @@ TEST(RequestProblem, AcceptsValidCameras) {
     EXPECT_EQ(problem_of(request_with({.left = -1e6, .projection = scene::Projection::Orthographic})), "");
 }
 
+TEST(RequestProblem, RejectsNoisesThatCannotBeReached) {
+    session::ViewRequest request = request_with({});
+    request.frames = session::Frames::Last;
+    for (const double noise : {0.0, 1e-9, 0.02, 1.0}) {
+        request.stop.noise = noise;
+        EXPECT_EQ(problem_of(request), "") << noise;
+    }
+    for (const double noise :
+         {-0.1, 1e7, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        request.stop.noise = noise;
+        EXPECT_NE(problem_of(request).find("the noise to reach"), std::string::npos) << noise;
+    }
+    request.stop.noise = 0.02;
+    request.frames = session::Frames::All;
+    EXPECT_NE(problem_of(request).find("can stop at a noise"), std::string::npos);
+}
+
 TEST(RequestProblem, RejectsInvalidCameras) {
     constexpr double NaN = std::numeric_limits<double>::quiet_NaN(),
                      Infinity = std::numeric_limits<double>::infinity();

@@ -45,6 +45,38 @@ TEST_F(UnitLedgerTest, AdmitsFilmFromTheHolderAlone) {
     EXPECT_NE(admit(A, unit, 0, {0, 3}, {1, 2}).problem, "") << "another version";
 }
 
+TEST_F(UnitLedgerTest, AdmitsFilmOfTheUnitsPixelsAlone) {
+    const std::string mask("\x01\0\0\0\0\0\0\x80", 8), other("\x02\0\0\0\0\0\0\x80", 8);
+    const UnitId id = ledger.next_unit();
+    ledger.deal({.id = id, .version = SceneVersion, .tile = tiles[0], .block = {8, 3}, .mask = mask}, 0,
+                nullptr, A, {});
+    const auto problem = [&](const std::string& of) {
+        return ledger.admit(A, {id, SceneVersion, tiles[0], {8, 3}, of}).problem;
+    };
+    EXPECT_NE(problem(""), "");
+    EXPECT_NE(problem(other), "");
+    EXPECT_EQ(problem(mask), "");
+    (void)ledger.arrived(A, 0, {8, 3});
+    EXPECT_EQ(ledger.arrived_samples(), 2u * 8u);
+}
+
+// The next step deals the same samples of the tile for other pixels.
+TEST_F(UnitLedgerTest, FilmOfAnEarlierStepComesTooLate) {
+    const UnitId id = deal(A, 0, {8, 3});
+    (void)ledger.arrived(A, 0, {8, 3});
+    EXPECT_TRUE(ledger.is_idle());
+    ledger.begin_step();
+    EXPECT_TRUE(ledger.samples(0).blocks().empty());
+    const Admission late = admit(A, id, 0, {8, 3});
+    EXPECT_EQ(late.problem, "");
+    EXPECT_EQ(late.use, Admission::Use::Drop);
+    const UnitId again = deal(B, 0, {8, 3});
+    EXPECT_EQ(admit(B, again, 0, {8, 3}).use, Admission::Use::Merge);
+    (void)ledger.arrived(B, 0, {8, 3});
+    EXPECT_EQ(ledger.counts().merged, 2u);
+    EXPECT_EQ(ledger.tiles_without_samples(), 1u);
+}
+
 TEST_F(UnitLedgerTest, AdmitsThePartsOfAStoppedUnitAndWhatItsUnitsCoverTogether) {
     const UnitId first = deal(A, 0, {0, 2}), second = deal(A, 0, {4, 2});
     EXPECT_EQ(admit(A, first, 0, {0, 1}).problem, "");

@@ -46,6 +46,14 @@ TEST(ViewMemory, ViewsOfOneSizeShareADenoiserThatKeepsNothing) {
     EXPECT_EQ(double(bytes({request("fdf"), request("fdf", 400, 640)})), 2.0 * double(film) + 2.0 * denoiser);
 }
 
+TEST(ViewMemory, DecisionsOfAdaptiveViewsReadACopyOfTheirFilm) {
+    session::ViewRequest adaptive = request("none");
+    adaptive.stop = {.spp = 1024, .noise = 0.1};
+    complete(adaptive);
+    EXPECT_EQ(double(bytes({adaptive})), 2.0 * double(film_bytes(adaptive.view)) + 48.0 * Pixels);
+    EXPECT_GT(film_bytes(adaptive.view), film_bytes(request("none").view)) << "it has the variance of blocks";
+}
+
 TEST(ViewMemory, CoarsePicturesHaveHistoriesOfTheirOwn) {
     session::ViewRequest live = request("psvgf");
     const double film = double(film_bytes(live.view)), one = Pixels * bytes_per_pixel("psvgf");

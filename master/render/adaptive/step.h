@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "master/render/schedule/plan.h"
+#include "mediator/frame/film_tile.h"
+
+namespace tessera::master {
+
+struct AdaptiveSettings {
+    double noise = 0.0;             // wanted sqrt(relMSE) of the unfiltered picture
+    std::uint64_t samples = 0;      // that all pixels may have together; 0: any number
+    std::uint64_t max_samples = 0;  // of a pixel
+    std::uint32_t step = 0;         // how many steps there were before
+};
+
+// What an adaptive picture needs next. A pure function of the film, so that neither nodes nor the order of arrival matter.
+struct Step {
+    double noise = 0.0;                  // of the picture so far
+    std::uint64_t samples_expected = 0;  // of all pixels, at the end
+    std::vector<Round>
+        rounds;  // by number of samples, ascending; empty: it is good enough, or may not have more
+};
+
+// Each pixel has 2^k samples; a step doubles those of some pixels. `doublings`: k, rejected samples included; 255: it gets
+// no more.
+//
+// With relMSE d^2 / n of a pixel that has n samples, the fewest samples that lower the sum over pixels to the part
+// e^2 / noise^2 of what it is now, T, are n = d sum d / T. Pixels that have less than n / sqrt(2) are doubled, those that gain
+// most per sample first, until the prediction is reached, or the samples are used up that they may have together. One eighth of the step goes to pixels by a low-discrepancy order
+// instead, because noise may have missed something.
+Step next_step(const frame::FilmTile& film, std::span<const std::uint8_t> doublings,
+               std::span<const Rect> tiles, const AdaptiveSettings& settings);
+
+}  // namespace tessera::master
