@@ -8,6 +8,7 @@
 #include <set>
 #include <span>
 
+#include "client/tools/formatted.h"
 #include "client/tools/view_attributes.h"
 #include "mediator/frame/resolve.h"
 #include "mediator/picture/atomic_file.h"
@@ -88,6 +89,7 @@ std::map<std::string, std::string> provenance(const session::ViewRequest& reques
         std::minmax_element(result.film()->counts.begin(), result.film()->counts.end());
     std::map<std::string, std::string> attributes = view_attributes(request.view);
     if (result.has_picture()) attributes["tessera.filter"] = result.summary.picture.filter;
+    if (result.summary.noise > 0.0) attributes["tessera.noise"] = formatted("%.6g", result.summary.noise);
     if (!result.summary.failed_tiles.empty())
         attributes["tessera.failedTiles"] = failed_tiles_text(result.summary.failed_tiles);
     attributes.insert({{"tessera.software", "tessera " + cli::version()},

@@ -34,7 +34,7 @@ std::string describe(const session::ViewProgress& progress, const session::ViewR
         case session::Phase::Rendering:
             break;
     }
-    const bool by_time = request.stop.time_limit > Duration::zero();
+    const bool by_time = request.stop.time_limit > Duration::zero() && !request.stop.is_adaptive();
     const double elapsed = std::max(seconds(progress.elapsed), 1e-3);
     const double expected = double(std::max<std::uint64_t>(progress.samples_expected, 1));
     const double done = std::min(
@@ -42,8 +42,15 @@ std::string describe(const session::ViewProgress& progress, const session::ViewR
     const double spp =
         double(progress.samples) / double(std::max<std::size_t>(request.view.window.pixel_count(), 1));
     std::string text = formatted("%3.0f %%   ", 100.0 * done);
-    text += by_time ? formatted("%.1f spp", spp)
+    if (request.stop.is_adaptive()) {
+        text += formatted("%.1f spp", spp);
+        if (progress.noise > 0.0)
+            text += formatted("   noise %.3g of %.3g", progress.noise, request.stop.noise);
+    } else {
+        text += by_time
+                    ? formatted("%.1f spp", spp)
                     : formatted("%.0f of %llu spp", spp, static_cast<unsigned long long>(request.stop.spp));
+    }
     text += formatted("   %.1f Mrays/s   %u node%s", double(progress.rays) / elapsed * 1e-6, progress.nodes,
                       progress.nodes == 1 ? "" : "s");
     if (done > 0.0) text += "   " + time_left(elapsed * (1.0 - done) / done);

@@ -66,14 +66,20 @@ Expected<EmbeddedSettings> embedded_settings(const RenderOptions& options) {
 }
 
 Expected<void> set_amount(const RenderOptions& options, session::ViewRequest& job) {
-    if (options.spp && options.time) return wrong("--spp and --time exclude each other");
+    constexpr std::uint64_t MostSamples = 65536;  // of a pixel, unless --spp says otherwise
+    if (options.noise) {
+        if (!(*options.noise > 0.0 && *options.noise <= 1.0)) return wrong("--noise: above 0, up to 1");
+        job.stop.noise = *options.noise;
+    } else if (options.spp && options.time) {
+        return wrong("--spp and --time exclude each other; with --noise both are upper bounds");
+    }
     if (options.time) {
         const auto limit = parse_duration(*options.time);
         if (!limit) return wrong(std::string("--time: ") + limit.error().what());
         job.stop.time_limit = *limit;
-        job.stop.spp = MaxSpp;
+        job.stop.spp = options.spp.value_or(options.noise ? MostSamples : MaxSpp);
     } else {
-        job.stop.spp = options.spp.value_or(job.stop.spp);
+        job.stop.spp = options.spp.value_or(options.noise ? MostSamples : job.stop.spp);
     }
     if (job.stop.spp == 0 || job.stop.spp > MaxSpp) return wrong("--spp: between 1 and 2^31");
     return {};
@@ -247,6 +253,11 @@ void RenderOptions::add_to(cli::CommandLine& command) {
         "--time",
         "time budget instead of --spp, as 800ms or 10s; with --denoise it includes denoising and encoding",
         time);
+    command.option(
+        "--noise",
+        "samples where they are needed, until the unfiltered picture has this relative error (the root "
+        "of relMSE, as of tessera compare), say 0.02; --spp (of any pixel) and --time are upper bounds",
+        noise);
     command.option("--frames", "render frames A:B of the animation, each to its own -o out.%04d.exr", frames);
     command.option(
         "--fps",
@@ -275,6 +286,7 @@ void RenderOptions::add_to(cli::CommandLine& command) {
         {"tessera render room.glb -o room.exr -o room.png --spp 256",
          "tessera render room.glb -o room.png --spp 8 --denoise",
          "tessera render still.glb --env studio.exr -o still.png --time 800ms --denoise",
+         "tessera render room.glb -o room.png --noise 0.02 --time 5min",
          "tessera render robot.glb --at 1.5 --animation walk -o robot.exr",
          "tessera render robot.glb --frames 0:47 --fps 24 -o robot.%04d.exr",
          "tessera render room.glb -o room.exr --nodes 2 --policy cooperative --json",

@@ -22,7 +22,7 @@ struct RenderOptions {
     std::vector<std::string> outputs;
     std::optional<std::uint64_t> spp, nodes, threads;
     std::optional<std::string> time, backend, device, cache, master, keys, wait_nodes, frames;
-    std::optional<double> fps;
+    std::optional<double> fps, noise;
     std::string user = "editor";
     std::string policy = "mixed";
     FilterOption filter;

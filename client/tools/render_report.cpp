@@ -21,7 +21,7 @@ double per_second(std::uint64_t amount, double time) {
 
 // The requested number if it was reached.
 Json spp_value(const session::ViewRequest& request, const session::ViewSummary& result) {
-    if (result.outcome == session::Outcome::Complete) return request.stop.spp;
+    if (result.outcome == session::Outcome::Complete && !request.stop.is_adaptive()) return request.stop.spp;
     return samples_per_pixel(request, result);
 }
 
@@ -98,6 +98,7 @@ std::string as_json(const RenderReport& report) {
         {"instances", result.instances},
         {"lights", result.lights},
         {"nonfinite_samples", result.nonfinite_samples},
+        {"noise", result.noise > 0.0 ? Json(result.noise) : Json()},
         {"clamp",
          report.request.view.clamp_indirect > 0.0f ? Json(report.request.view.clamp_indirect) : Json()},
         {"peak_memory_bytes", peak_memory_bytes()},
@@ -145,6 +146,13 @@ std::string as_text(const RenderReport& report, const std::vector<std::string>& 
     line("%.2f s in all, %.2f s rendering: %.2f Mrays/s, %.3f Msamples/s", report.seconds_total,
          result.seconds_render, per_second(result.rays, result.seconds_render) * 1e-6,
          per_second(result.samples, result.seconds_render) * 1e-6);
+    if (const double wanted = report.request.stop.noise; wanted > 0.0 && result.noise > 0.0) {
+        line("noise %.3g: %s", result.noise,
+             result.noise <= wanted                         ? "as wanted"
+             : result.outcome == session::Outcome::TimeUp   ? "the time was up before it was as wanted"
+             : result.outcome == session::Outcome::Complete ? "--spp was reached before it was as wanted"
+                                                            : "not as wanted");
+    }
     if (const auto& picture = result.picture; picture.encoding != session::PictureEncoding::None) {
         line(
             "filter %s: %.1f ms, encoding %.1f ms%s", picture.filter.c_str(), picture.seconds_filter * 1e3,

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Live scenes with the real master and a node that renders, over CURVE. Usage: live_master_test.py BIN_FOLDER"""
 
+import math
 import pathlib
 import signal
 import subprocess
@@ -73,6 +74,12 @@ class LiveMaster(unittest.TestCase):
         self.assertEqual([round(plane[64 * 24 + 32], 3) for plane in rendered.frame.planes()], [0.25, 0.5, 0.75])
         self.assertEqual(set(rendered.frame.film().counts), {8})
         self.assertLessEqual(set(phases), {"waiting_for_nodes", "syncing", "rendering", "filtering", "delivering"})
+        flat = self.session.render(POSE, size=(64, 48), noise=0.01)
+        self.assertEqual(flat.summary.samples, 64 * 48 * 16)  # what all pixels get before the first decision
+        self.assertLess(flat.summary.noise, 0.01)
+        for noise in (0.0, -1.0, 1.5, math.nan):
+            with self.assertRaisesRegex(tessera.InvalidInput, "noise"):
+                self.session.render(POSE, noise=noise)
         late = self.session.render(POSE, size=(64, 48), spp=1 << 20, budget=0.5)
         self.assertEqual(late.summary.outcome, "time_up")
         with self.cluster.connect(name="bob") as bob, self.assertRaises(tessera.Refused):

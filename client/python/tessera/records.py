@@ -128,6 +128,7 @@ class Progress:
     rays: int
     nodes: int
     seconds: float  # since rendering began
+    noise: float  # of a picture that stops at a noise, at the last decision; 0 = unknown
 
 
 @dataclass(frozen=True)
@@ -158,6 +159,7 @@ class Summary(SampleCountNames):
     filter: str  # name and parameters, as executed
     notes: tuple[str, ...]  # about the picture
     failed_tiles: tuple[FailedTile, ...] = ()  # the first ones
+    noise: float = 0.0  # as in Progress
 
 
 _VIEW_PHASES = ("waiting_for_nodes", "syncing", "rendering", "delivering", "filtering")
@@ -196,7 +198,7 @@ def status_of(answer: Message) -> Status:
 def progress_of(message: Message) -> Progress:
     phase = _VIEW_PHASES[message.phase] if message.phase < len(_VIEW_PHASES) else "unknown"
     return Progress(phase, message.samples, message.samples_expected, message.rays, message.nodes,
-                    message.elapsed * 1e-9)
+                    message.elapsed * 1e-9, message.noise)
 
 
 def summary_of(message: Message) -> Summary:
@@ -206,4 +208,4 @@ def summary_of(message: Message) -> Summary:
                    tuple(text(node.name) for node in message.nodes), text(message.picture.filter),
                    tuple(text(note) for note in message.picture.notes),
                    tuple(FailedTile(tile.rect.x, tile.rect.y, tile.rect.width, tile.rect.height, tile.samples, text(tile.message))
-                         for tile in message.failed_tiles))
+                         for tile in message.failed_tiles), message.noise)
