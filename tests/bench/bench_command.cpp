@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "tests/bench/adaptive/adaptive_command.h"
 #include "tests/bench/backends/backends_command.h"
 #include "tests/bench/consistency/consistency_command.h"
 #include "tests/bench/filters/filters_command.h"
@@ -14,12 +15,13 @@
 namespace tessera::tools::bench {
 
 Command bench_command(cli::CommandLine& program) {
-    cli::CommandLine& line = program.command("bench",
-                                             "Benchmarks: error, time and consistency of denoisers, accuracy "
-                                             "of variances, back-ends, edits and displays.");
+    cli::CommandLine& line =
+        program.command("bench",
+                        "Benchmarks: adaptive sampling, error, time and consistency of denoisers, accuracy "
+                        "of variances, back-ends, edits and displays.");
     const std::vector<Command> commands{
-        backends_command(line), consistency_command(line), displays_command(line), filters_command(line),
-        live_command(line),     pictures_command(line),    variance_command(line)};
+        adaptive_command(line), backends_command(line), consistency_command(line), displays_command(line),
+        filters_command(line),  live_command(line),     pictures_command(line),    variance_command(line)};
     return {"bench", [commands](std::string_view chosen) {
                 const auto command = std::ranges::find(commands, chosen, &Command::name);
                 try {

@@ -39,6 +39,9 @@ class Sampler {
     view::View view(std::uint32_t width, std::uint32_t height, frame::ChannelSet channels,
                     view::PathClass path_class, std::uint64_t seed) const;
 
+    backend::Backend& backend() const { return *backend_; }
+    std::uint32_t tile() const { return tile_; }  // edge in pixels
+
     GrowingFilm film(const view::View& view) const;
     // Adds samples until there are `spp`. False: stopped, and the film must not be used.
     bool grow(GrowingFilm& film, std::uint64_t spp, const std::stop_token& stop) const;

@@ -24,12 +24,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-struct Size {
+struct OutputSize {
     std::uint32_t width = 0, height = 0;
 };
 
 // A flat wall two metres in front of the head.
-display::Display wall_of(const DisplaysOptions& options, Size size, display::Stereo stereo) {
+display::Display wall_of(const DisplaysOptions& options, OutputSize size, display::Stereo stereo) {
     display::Display wall{.name = "bench"};
     const double pixel = 6.0 / (options.columns * size.width);
     for (std::uint32_t row = 0; row < options.rows; ++row) {
@@ -217,7 +217,7 @@ DisplaysResults run_displays(const DisplaysOptions& options,
     DisplaysResults results;
     struct Case {
         const char* name;
-        Size size;
+        OutputSize size;
         Encryption encryption;
     };
     // A quarter of the thesis' 1440 x 1050 projectors; and the cost of the barrier alone.

@@ -1,0 +1,128 @@
+#include "tests/bench/adaptive/adaptive_bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mediator/frame/resolve.h"
+#include "tests/bench/adaptive/adaptive_film.h"
+#include "tests/bench/filters/looks.h"
+#include "tests/bench/filters/references.h"
+
+namespace tessera::tools::bench {
+
+namespace {
+
+constexpr frame::ChannelSet AdaptiveChannels{frame::Channel::Radiance, frame::Channel::BlockVariance};
+
+// Sums over the seeds.
+struct Errors {
+    double all = 0.0, trimmed = 0.0, light = 0.0;
+    // Returns the relMSE.
+    double add(const frame::FilmTile& film, const ReferencePair& truth) {
+        const frame::Image picture = frame::resolve_picture(film);
+        const SquaredErrors errors = squared_errors(picture, truth);
+        all += errors.relmse.all.value;
+        trimmed += errors.relmse.trimmed.value;
+        light += mean_luminance(picture);
+        return errors.relmse.all.value;
+    }
+};
+
+class AdaptiveMeasurement {
+  public:
+    AdaptiveMeasurement(const BenchScene& scene, const AdaptivePlan& plan, tbb::task_arena& arena,
+                        const BenchProgress& progress, const std::stop_token& stop)
+        : scene_(scene),
+          plan_(plan),
+          arena_(arena),
+          progress_(progress),
+          stop_(stop),
+          sampler_(scene, arena) {}
+
+    std::optional<AdaptiveScene> run() {
+        const auto truth =
+            references({.scene = scene_.name,
+                        .content = to_hex(scene_.content.state_hash()),
+                        .view = view(0),
+                        .spp = plan_.reference_spp},
+                       sampler_, ReferenceCache(plan_.references), {progress_.say, progress_.warn}, stop_);
+        if (!truth) return std::nullopt;
+        progress_.say(fmt::format("{}: units with masks", scene_.name));
+        const auto rate = masked_rate(sampler_, view(1), arena_, stop_);
+        if (!rate) return std::nullopt;
+        AdaptiveScene result{.name = scene_.name, .masked_rate = *rate, .rows = {}};
+        const std::uint64_t pixels = std::uint64_t{plan_.size.width} * plan_.size.height;
+        for (const std::uint64_t spp : plan_.spp) {
+            const auto row = measure({.samples = spp * pixels, .max_samples = MostSamples}, *truth);
+            if (!row) return std::nullopt;
+            result.rows.push_back(*row);
+        }
+        for (const double noise : plan_.noise) {
+            const auto row = measure({.noise = noise, .max_samples = MostSamples}, *truth);
+            if (!row) return std::nullopt;
+            result.rows.push_back(*row);
+        }
+        return result;
+    }
+
+  private:
+    static constexpr std::uint64_t MostSamples = 1 << 16;  // of a pixel
+
+    view::View view(std::uint64_t seed) const {
+        return sampler_.view(plan_.size.width, plan_.size.height, AdaptiveChannels, view::PathClass::Indirect,
+                             seed);
+    }
+
+    std::optional<AdaptiveRow> measure(const master::AdaptiveSettings& settings, const ReferencePair& truth) {
+        AdaptiveRow row{.noise = settings.noise, .true_noise = {}};
+        Errors adaptive, uniform;
+        double sampling = 0.0, deciding = 0.0;
+        for (std::uint32_t seed = 1; seed <= plan_.seeds; ++seed) {
+            progress_.say(
+                fmt::format("{}: {}, seed {} of {}", scene_.name,
+                            settings.noise > 0.0
+                                ? fmt::format("noise {:g}", settings.noise)
+                                : fmt::format("{} spp", settings.samples / view(seed).window.pixel_count()),
+                            seed, plan_.seeds));
+            const auto film = adaptive_film(sampler_, view(seed), settings, arena_, stop_);
+            if (!film) return std::nullopt;
+            const double spp = double(film->samples) / double(film->whole.pixel_count());
+            const double error = adaptive.add(film->whole, truth);
+            row.true_noise.push_back(std::sqrt(std::max(0.0, error)) /
+                                     (settings.noise > 0.0 ? settings.noise : film->noise));
+            row.spp += spp / plan_.seeds;
+            row.steps += double(film->steps) / plan_.seeds;
+            sampling += film->seconds_sampling;
+            deciding += film->seconds_deciding;
+            GrowingFilm same = sampler_.film(view(seed));
+            if (!sampler_.grow(same, static_cast<std::uint64_t>(std::lround(spp)), stop_))
+                return std::nullopt;
+            uniform.add(same.whole(), truth);
+        }
+        row.gain = uniform.all / adaptive.all;
+        row.trimmed_gain = uniform.trimmed / adaptive.trimmed;
+        row.light = adaptive.light / uniform.light;
+        row.deciding = deciding / (deciding + sampling);
+        std::ranges::sort(row.true_noise);
+        return row;
+    }
+
+    const BenchScene& scene_;
+    const AdaptivePlan& plan_;
+    tbb::task_arena& arena_;
+    const BenchProgress& progress_;
+    const std::stop_token& stop_;
+    Sampler sampler_;
+};
+
+}  // namespace
+
+std::optional<AdaptiveScene> measure_adaptive(const BenchScene& scene, const AdaptivePlan& plan,
+                                              tbb::task_arena& arena, const BenchProgress& progress,
+                                              const std::stop_token& stop) {
+    return AdaptiveMeasurement(scene, plan, arena, progress, stop).run();
+}
+
+}  // namespace tessera::tools::bench
