@@ -13,8 +13,8 @@ from same_film import pixels_of  # noqa: E402
 
 SCENE = ROOT / "tests" / "scenes" / "room-1.glb"
 FRAMES = [["--size", "96x64", "--spp", "64", "--policy", "mixed"], ["--size", "130x70", "--spp", "24", "--policy", "tiled"],
-          ["--size", "64x64", "--spp", "75", "--policy", "cooperative"]]
-JOB = ["--size", "100x60", "--spp", "150", "--seed", "9", "--exposure", "0"]
+          ["--size", "64x64", "--spp", "75", "--policy", "cooperative"], ["--size", "96x64", "--noise", "0.2"]]
+JOB = ["--size", "100x60", "--noise", "0.14", "--seed", "9", "--exposure", "0"]
 EDITED = 8  # transforms whose places change
 EDIT_SECONDS = 0.05  # between two edits
 CREATE_EVERY = 20  # edits
