@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "master/filter/catalog.h"
-#include "master/render/adaptive/noise.h"
 #include "master/render/view_request.h"
+#include "mediator/picture/noise_map.h"
 
 namespace tessera::master {
 
@@ -23,7 +23,8 @@ const filter::Description* denoiser_of(const view::View& view) {
 void ViewMemory::add(const session::ViewRequest& request) {
     bytes_ += film_bytes(request.view);
     if (request.stop.is_adaptive()) {  // a decision reads a copy of the film
-        bytes_ += film_bytes(request.view) + NoiseMap::BytesPerPixel * request.view.window.pixel_count();
+        bytes_ +=
+            film_bytes(request.view) + picture::NoiseMap::BytesPerPixel * request.view.window.pixel_count();
     }
     const filter::Description* denoiser = denoiser_of(request.view);
     if (denoiser == nullptr) return;

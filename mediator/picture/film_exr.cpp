@@ -18,6 +18,7 @@
 #include "mediator/frame/design_effect.h"
 #include "mediator/frame/resolve.h"
 #include "mediator/picture/exr_header.h"
+#include "mediator/picture/noise_map.h"
 
 namespace tessera::picture {
 
@@ -74,6 +75,16 @@ void add_variances(const frame::FilmTile& film, std::vector<Layer>& layers) {
     }
     layers.push_back(std::move(mean));
     layers.push_back(std::move(sample));
+}
+
+// As adaptive sampling sees it.
+Layer noise_layer(const frame::FilmTile& film) {
+    Layer layer{"noise", {"Y"}, frame::Image(film.rect.width, film.rect.height, 1)};
+    const NoiseMap map(film);
+    for (std::size_t i = 0; i < film.pixel_count(); ++i)
+        layer.image.values[i] =
+            film.counts[i] < 2 ? 0.0f : map.deviations()[i] / std::sqrt(static_cast<float>(film.counts[i]));
+    return layer;
 }
 
 std::vector<std::string> component_names(const frame::ChannelInfo& entry) {
@@ -190,6 +201,7 @@ void write_film_exr(const std::string& path, const FilmFile& file,
             layers.push_back({filtered ? "raw" : "", rgb, frame::resolve_picture(film)});
             if (picture != Channel::Radiance) continue;
             add_variances(film, layers);
+            layers.push_back(noise_layer(film));
             attributes["tessera.varianceOf"] =
                 film.channels.contains(Channel::BlockVariance) ? "mean-stratified" : "mean-independent";
         } else if (entry.channel == Channel::Alpha && !filtered) {

@@ -22,7 +22,7 @@ struct FilmFile {
 enum class Statistics { Omit, Include };
 
 // One EXR: R G B (A) is `filtered`, if given (3 or 4 components), and layer `raw` the unfiltered radiance;
-// otherwise R G B is the radiance. Further layers: its variance of the mean, every other
+// otherwise R G B is the radiance. Further layers: its variance of the mean, its noise (noise_map.h), every other
 // channel of the film resolved, object ids, sample counts; each channel's merge rule among the attributes.
 // Statistics::Include adds the film itself, plane by plane (layers statistics.CHANNEL), from which
 // read_film_exr() restores it bit by bit. The file is never incomplete; throws Error{Io}.

@@ -12,6 +12,7 @@
 #include "mediator/frame/design_effect.h"
 #include "mediator/frame/resolve.h"
 #include "mediator/picture/exr_reader.h"
+#include "mediator/picture/noise_map.h"
 #include "mediator/picture/picture_encoder.h"
 #include "tests/filter/synthetic.h"
 
@@ -77,6 +78,22 @@ TEST_F(FilmExr, SaysWhatItsVariancesAreOf) {
         is_reduced = is_reduced || effect[i / 3] < 1.0f;
     }
     EXPECT_TRUE(is_reduced);
+}
+
+// The root of the noise layer's mean square is about that of relMSE: deviations are averaged over neighbours.
+TEST_F(FilmExr, HasAMapOfItsNoise) {
+    const frame::FilmTile original = film();
+    write_film_exr(file("a.exr"), {37, 23, original, {}});
+    const Picture noise = read_exr(file("a.exr"), "noise");
+    const NoiseMap map(original);
+    ASSERT_EQ(noise.image.pixel_count(), original.pixel_count());
+    double sum = 0.0;
+    for (std::size_t i = 0; i < original.pixel_count(); ++i) {
+        const float value = noise.image.pixel(i)[0];
+        EXPECT_FLOAT_EQ(value, map.deviations()[i] / std::sqrt(float(original.counts[i])));
+        sum += double(value) * double(value) / double(original.pixel_count());
+    }
+    EXPECT_NEAR(std::sqrt(sum) / map.noise(), 1.0, 0.3);
 }
 
 // Older films have half buffers of even samples, and no block variances.

@@ -5,8 +5,8 @@
 #include <limits>
 #include <map>
 
-#include "master/render/adaptive/noise.h"
 #include "mediator/frame/pixel_set.h"
+#include "mediator/picture/noise_map.h"
 
 namespace tessera::master {
 
@@ -174,7 +174,7 @@ class Chooser {
     const frame::FilmTile& film_;
     std::span<const std::uint8_t> doublings_;
     const AdaptiveSettings& settings_;
-    NoiseMap noise_;
+    picture::NoiseMap noise_;
     std::vector<bool> is_chosen_;
     double dealt_ = 0.0, best_per_deviation_ = 0.0;
 };

@@ -4,7 +4,7 @@
 
 #include "mediator/frame/film_tile.h"
 
-namespace tessera::master {
+namespace tessera::picture {
 
 // Error of an unfiltered picture, by its own samples: of every pixel the relative variance of its mean, whose mean over
 // the picture is relMSE (mediator/picture/metrics.h).
@@ -30,8 +30,8 @@ namespace tessera::master {
 // without regard to finds, a sixteenth gave 1.02 1.04, 1.42 1.41, 1.77 1.99 and 1.00 1.01 in the table above.)
 class NoiseMap {
   public:
-    static constexpr std::size_t BytesPerPixel =
-        48;  // that it takes while it is made, with the choice of pixels
+    // That it takes while it is made, or pixels are chosen by it.
+    static constexpr std::size_t BytesPerPixel = 60;
 
     // Of a film of all pixels of its rectangle, with Radiance; pixels with fewer than two samples have the noise of their
     // neighbours.
@@ -47,4 +47,4 @@ class NoiseMap {
     double noise_ = 0.0;
 };
 
-}  // namespace tessera::master
+}  // namespace tessera::picture

@@ -1,4 +1,4 @@
-#include "master/render/adaptive/noise.h"
+#include "mediator/picture/noise_map.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include "mediator/frame/design_effect.h"
 #include "mediator/picture/color.h"
 
-namespace tessera::master {
+namespace tessera::picture {
 
 namespace {
 
@@ -93,8 +93,7 @@ float floor_of(const frame::FilmTile& film, std::uint32_t radiance) {
     std::size_t known = 0;
     for (std::size_t i = 0; i < film.pixel_count(); ++i) {
         if (film.counts[i] == 0) continue;
-        light += picture::luminance(film.plane(radiance)[i], film.plane(radiance + 1)[i],
-                                    film.plane(radiance + 2)[i]);
+        light += luminance(film.plane(radiance)[i], film.plane(radiance + 1)[i], film.plane(radiance + 2)[i]);
         ++known;
     }
     const double mean = known > 0 ? light / static_cast<double>(known) : 0.0;
@@ -154,4 +153,4 @@ NoiseMap::NoiseMap(const frame::FilmTile& film) : deviations_(film.pixel_count()
     for (float& deviation : deviations_) deviation = std::sqrt(deviation * deviation + rare);
 }
 
-}  // namespace tessera::master
+}  // namespace tessera::picture

@@ -1,4 +1,4 @@
-#include "master/render/adaptive/noise.h"
+#include "mediator/picture/noise_map.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,8 @@
 
 namespace tessera::master {
 namespace {
+
+using picture::NoiseMap;
 
 // Uniform in an interval around 1 with this deviation.
 SimulatedPicture::Sample uniform_noise(double deviation) {
