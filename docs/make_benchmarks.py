@@ -25,6 +25,8 @@ MICRO = [
      "bare_bounce_rays"),
     ("film", "Film", "Merging, encoding and decoding film, against a copy in the cache.", "memory_copy"),
     ("filter", "Denoisers", "One picture of 1 megapixel, all cores. `plain_copy` copies as many bytes once.", "plain_copy"),
+    ("adaptive", "Adaptive sampling: decisions", "What the master does between two steps of a picture of 1280x720 pixels.",
+     None),
     ("compose", "Compositing", "Layers by depth and alpha.", None),
     ("display", "Displays: one output", "What an output does with a frame.", None),
 ]
@@ -130,6 +132,16 @@ def variance_rows(report):
                    f"{row['median']:.2f} | {row['largest']:.2f} | {row['picture']:.2f} | {row['picture_independent']:.2f} |")
 
 
+def adaptive_rows(report):
+    yield "| scene | stops at | spp | gain | trimmed | light | true noise | decisions | masked units |\n|---|---|---|---|---|---|---|---|---|"
+    for scene in report:
+        for row in scene["rows"]:
+            stop = f"noise {row['noise']:g}" if row["noise"] else "samples"
+            noise = sorted(row["true_noise"])
+            yield (f"| `{scene['scene']}` | {stop} | {short(row['spp'])} | {row['gain']:.2f} | {row['trimmed_gain']:.2f} | {row['light']:.3f} | "
+                   f"{noise[0]:.2f} to {noise[-1]:.2f} | {100 * row['deciding']:.1f} % | {scene['masked_rate']:.2f} |")
+
+
 def page(folder, version):
     yield INTRODUCTION
     yield machine(version)
@@ -153,6 +165,13 @@ def page(folder, version):
            "Estimates of single films over the true variance, from 12 seeds, in blocks of 16x16 pixels that expect at least three finds per 5x5; of the "
            "whole picture; and of that as if samples were not stratified. 1 is exact.\n")
     yield "\n".join(variance_rows(json.loads((folder / "variance.json").read_text()))) + "\n"
+    adaptive = json.loads((folder / "adaptive_sampling.json").read_text())
+    yield ("## Adaptive sampling\n\n"
+           "relMSE of uniform samples over that of as many where they are needed, with and without the worst 0.1 % of the pixels (96x54, several seeds); "
+           "mean light over that of uniform samples; the true noise over the wanted one (over its estimate where the samples are given); the part "
+           "of the time that decisions take; and samples per second of units with a quarter of the pixels, relative to whole tiles.\n"
+           f"{measured(folder, 'adaptive_sampling.json')}")
+    yield "\n".join(adaptive_rows(adaptive)) + "\n"
     for name, heading, text in TEXTS:
         output = "\n".join(line.rstrip() for line in (folder / f"{name}.txt").read_text().strip().split("\n"))
         yield f"## {heading}\n\n{text}\n{measured(folder, name + '.txt')}\n```\n{output}\n```\n"
