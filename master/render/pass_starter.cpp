@@ -37,6 +37,8 @@ void PassStarter::begin(Pass& pass, const PlanSettings& plan, const NodeRequirem
     const std::uint64_t most = plan.is_adaptive ? session::MaxSamplesPerPixel : plan.spp;
     FrameAssembler assembler(scheduler.tiles(), pass.view.channels, most);
     for (frame::FilmTile& block : earlier.blocks) {
+        // Before the first step all pixels have the same samples: a damaged folder may say otherwise.
+        if (earlier.steps == 0 && !block.pixels.is_all()) continue;
         const frame::SampleBlock samples = block.block;
         const FrameAssembler::Result result = assembler.insert(std::move(block), {});
         if (result.outcome == FrameAssembler::Outcome::Merged && earlier.steps == 0)

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "master/render/adaptive/step.h"
 #include "mediator/frame/pixel_set.h"
 
 namespace tessera::master {
@@ -21,8 +22,8 @@ std::vector<wire::SavedPart> saved_step(std::span<const Round> rounds, std::span
 }
 
 std::vector<Round> remaining_rounds(std::span<const wire::SavedPart> step, const FrameAssembler& film) {
-    std::map<std::pair<std::uint32_t, std::size_t>, std::set<std::uint32_t>>
-        left;  // pixels, by level and tile
+    // Sets, since a damaged folder may name pixels twice.
+    std::map<PixelsByRound::key_type, std::set<std::uint32_t>> left;
     const std::vector<Rect>& tiles = film.tiles();
     for (const wire::SavedPart& part : step) {
         const auto tile = static_cast<std::size_t>(std::ranges::find(tiles, part.tile) - tiles.begin());
@@ -36,19 +37,9 @@ std::vector<Round> remaining_rounds(std::span<const wire::SavedPart> step, const
                 left[{block.level, tile}].insert(pixel);
         }
     }
-    std::vector<Round> rounds;
-    std::vector<RoundMask> masks(tiles.size());
-    for (auto entry = left.begin(); entry != left.end();) {
-        const auto [level, tile] = entry->first;
-        const std::size_t all = tiles[tile].pixel_count();
-        const frame::PixelSet pixels({entry->second.begin(), entry->second.end()}, all);
-        masks[tile] = {pixels.bits(all), static_cast<std::uint32_t>(pixels.count(all))};
-        if (++entry != left.end() && entry->first.first == level) continue;
-        rounds.push_back({{std::uint64_t{1} << level, level},
-                          std::make_shared<const std::vector<RoundMask>>(std::move(masks))});
-        masks.assign(tiles.size(), {});
-    }
-    return rounds;
+    PixelsByRound pixels;
+    for (const auto& [round, of_tile] : left) pixels[round] = {of_tile.begin(), of_tile.end()};
+    return rounds_of(std::move(pixels), tiles);
 }
 
 }  // namespace tessera::master

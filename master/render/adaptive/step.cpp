@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "mediator/frame/pixel_set.h"
 #include "mediator/picture/noise_map.h"
@@ -104,11 +103,11 @@ class Chooser {
         if (!(sum > 0.0)) return;
         best_per_deviation_ = std::min(sum / target, affordable(allowed));
         const double left = (allowed - double(samples())) * (1.0 - UniformShare);
-        std::vector<Candidate> candidates =
-            those([&](std::size_t pixel) { return double(samples(pixel)) * std::sqrt(2.0) <= best(pixel); });
+        std::vector<Candidate> candidates = candidates_if(
+            [&](std::size_t pixel) { return double(samples(pixel)) * std::sqrt(2.0) <= best(pixel); });
         // All are within rounding of what they need.
         if (candidates.empty() && allowed == Unlimited)
-            candidates = those([&](std::size_t pixel) { return deviations[pixel] > 0.0f; });
+            candidates = candidates_if([&](std::size_t pixel) { return deviations[pixel] > 0.0f; });
         double reduction = 0.0;
         for (const Candidate& candidate : candidates)
             reduction += 0.5 * candidate.gain * double(samples(candidate.pixel));
@@ -138,19 +137,19 @@ class Chooser {
         return part;
     }
 
-    // Pixels that may have more.
+    // Of the pixels that may have more.
     template <class Wanted>
-    std::vector<Candidate> those(const Wanted& are_wanted) const {
+    std::vector<Candidate> candidates_if(const Wanted& is_wanted) const {
         std::vector<Candidate> candidates;
         for (std::uint32_t i = 0; i < is_chosen_.size(); ++i) {
             const double n = double(samples(i));
-            if (may_have_more(i) && are_wanted(i))
+            if (may_have_more(i) && is_wanted(i))
                 candidates.push_back({static_cast<float>(square(i) / (n * n)), i});
         }
         return candidates;
     }
 
-    // Those that gain most first.
+    // Pixels that gain most first.
     static void sort(std::vector<Candidate>& candidates) {
         std::ranges::sort(candidates, [](const Candidate& a, const Candidate& b) {
             return a.gain != b.gain ? a.gain > b.gain : a.pixel < b.pixel;
@@ -191,32 +190,37 @@ Step next_step(const frame::FilmTile& film, std::span<const std::uint8_t> doubli
     }
     const std::vector<bool>& is_chosen = chooser.choose();
     step.samples_expected = chooser.samples_expected();
-    std::map<std::uint32_t, std::vector<RoundMask>> rounds;  // by level
+    PixelsByRound pixels;
     const auto width = static_cast<std::size_t>(film.rect.width);
     for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
         const Rect& rect = tiles[tile];
-        std::map<std::uint32_t, std::vector<std::uint32_t>> pixels;  // of the tile, by level
         std::uint32_t index = 0;
         for (std::int32_t y = rect.y; y < rect.bottom(); ++y) {
             for (std::int32_t x = rect.x; x < rect.right(); ++x, ++index) {
                 const std::size_t at = static_cast<std::size_t>(y - film.rect.y) * width +
                                        static_cast<std::size_t>(x - film.rect.x);
-                if (is_chosen[at]) pixels[doublings[at]].push_back(index);
+                if (is_chosen[at]) pixels[{doublings[at], tile}].push_back(index);
             }
         }
-        for (auto& [level, indices] : pixels) {
-            std::vector<RoundMask>& masks = rounds[level];
-            masks.resize(tiles.size());
-            const auto count = static_cast<std::uint32_t>(indices.size());
-            const frame::PixelSet set(std::move(indices), rect.pixel_count());
-            masks[tile] = {set.bits(rect.pixel_count()), count};
-        }
     }
-    for (auto& [level, masks] : rounds) {
-        step.rounds.push_back({{std::uint64_t{1} << level, level},
-                               std::make_shared<const std::vector<RoundMask>>(std::move(masks))});
-    }
+    step.rounds = rounds_of(std::move(pixels), tiles);
     return step;
+}
+
+std::vector<Round> rounds_of(PixelsByRound&& pixels, std::span<const Rect> tiles) {
+    std::vector<Round> rounds;
+    std::vector<RoundMask> masks(tiles.size());
+    for (auto entry = pixels.begin(); entry != pixels.end();) {
+        const auto [level, tile] = entry->first;
+        const std::size_t all = tiles[tile].pixel_count();
+        const frame::PixelSet set(std::move(entry->second), all);
+        masks[tile] = {set.bits(all), static_cast<std::uint32_t>(set.count(all))};
+        if (++entry != pixels.end() && entry->first.first == level) continue;
+        rounds.push_back({{std::uint64_t{1} << level, level},
+                          std::make_shared<const std::vector<RoundMask>>(std::move(masks))});
+        masks.assign(tiles.size(), {});
+    }
+    return rounds;
 }
 
 }  // namespace tessera::master

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "master/render/schedule/plan.h"
@@ -28,10 +30,15 @@ struct Step {
 // no more.
 //
 // With relMSE d^2 / n of a pixel that has n samples, the fewest samples that lower the sum over pixels to the part
-// e^2 / noise^2 of what it is now, T, are n = d sum d / T. Pixels that have less than n / sqrt(2) are doubled, those that gain
-// most per sample first, until the prediction is reached, or the samples are used up that they may have together. One eighth of the step goes to pixels by a low-discrepancy order
-// instead, because noise may have missed something.
+// e^2 / noise^2 of what it is now, T, are n = d sum d / T; with a number of samples for all pixels it is the part d / sum d of
+// that, as far as no pixel has more already. Pixels that have less than n / sqrt(2) are doubled, those that gain most per
+// sample first, until the prediction is reached or the samples are used up. One eighth of the step goes to pixels by a
+// low-discrepancy order instead, because the estimate may have missed something.
 Step next_step(const frame::FilmTile& film, std::span<const std::uint8_t> doublings,
                std::span<const Rect> tiles, const AdaptiveSettings& settings);
+
+// Pixels of a tile, ascending, by the level of their block [2^level, 2^(level + 1)) and the index of the tile.
+using PixelsByRound = std::map<std::pair<std::uint32_t, std::size_t>, std::vector<std::uint32_t>>;
+std::vector<Round> rounds_of(PixelsByRound&& pixels, std::span<const Rect> tiles);
 
 }  // namespace tessera::master

@@ -41,8 +41,7 @@ struct Round {
 };
 
 // The remaining work of one frame. Rounds double the number of samples (design 1.7), of all pixels or of those that need
-// it; within a round tiles are
-// ordered from the centre outwards. A node claims a block of samples of one tile and gets it piece by piece: it merges
+// it; within a round tiles are ordered from the centre outwards. A node claims a block of samples of one tile and gets it piece by piece: it merges
 // consecutive pieces before it sends their film, so a claim costs the network one film, however short its pieces are.
 // The policy says how large claims are:
 //   tiled        a tile's part of a round
