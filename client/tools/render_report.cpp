@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "client/tools/formatted.h"
 #include "client/tools/host_info.h"
 #include "mediator/picture/picture_encoder.h"
 
@@ -71,6 +72,18 @@ Json picture_value(const session::ViewSummary& result) {
             {"max_samples", result.max_samples},
             {"passes", passes},
             {"notes", picture.notes}};
+}
+
+// What ended a picture that was to have a noise.
+std::string noise_text(const session::StopRule& stop, const session::ViewSummary& result) {
+    if (!stop.is_adaptive()) return "noise unknown: it takes 16 samples of a pixel, and --spp 32 or more";
+    const bool is_complete = result.outcome == session::Outcome::Complete;
+    const bool is_known = result.noise > 0.0 || is_complete;  // 0: it is black
+    if (is_known && result.noise <= stop.noise) return formatted("noise %.3g: as wanted", result.noise);
+    return (is_known ? formatted("noise %.3g: ", result.noise) : std::string("noise unknown: ")) +
+           (result.outcome == session::Outcome::TimeUp ? "the time was up before it was as wanted"
+            : is_complete                              ? "--spp was reached before it was as wanted"
+                                                       : "the picture ended before it was as wanted");
 }
 
 }  // namespace
@@ -146,13 +159,7 @@ std::string as_text(const RenderReport& report, const std::vector<std::string>& 
     line("%.2f s in all, %.2f s rendering: %.2f Mrays/s, %.3f Msamples/s", report.seconds_total,
          result.seconds_render, per_second(result.rays, result.seconds_render) * 1e-6,
          per_second(result.samples, result.seconds_render) * 1e-6);
-    if (const double wanted = report.request.stop.noise; wanted > 0.0 && result.noise > 0.0) {
-        line("noise %.3g: %s", result.noise,
-             result.noise <= wanted                         ? "as wanted"
-             : result.outcome == session::Outcome::TimeUp   ? "the time was up before it was as wanted"
-             : result.outcome == session::Outcome::Complete ? "--spp was reached before it was as wanted"
-                                                            : "not as wanted");
-    }
+    if (report.request.stop.noise > 0.0) line("%s", noise_text(report.request.stop, result).c_str());
     if (const auto& picture = result.picture; picture.encoding != session::PictureEncoding::None) {
         line(
             "filter %s: %.1f ms, encoding %.1f ms%s", picture.filter.c_str(), picture.seconds_filter * 1e3,
