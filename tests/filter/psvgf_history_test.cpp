@@ -240,6 +240,21 @@ TEST(PsvgfHistory, ChangedLightShortensTheHistory) {  // DT31
     EXPECT_GT(age, 0.7 * (0.25 * 64 + 4));
 }
 
+// With one sample a pixel, 3x3 pixels do not show that half of the light went.
+TEST(PsvgfHistory, DimmedLightIsGoneWithOneSampleAPixel) {
+    PlanesScene scene = wall_alone();
+    const auto camera = looking_at(scene, {}, Width, Height);
+    PlanesScene dimmed = scene;
+    dimmed.strength *= 0.5;
+    Session session(Raw);
+    session.restart(photograph(scene, camera, {.n = 8, .seed = 1}));
+    const double before = mean_of(session.map("irradiance"));
+    session.restart(photograph(dimmed, camera, {.n = 1, .seed = 2}), {.lights_or_materials = true});
+    const double after = mean_of(session.map("irradiance"));
+    const double light = 0.5 * before;  // that went
+    EXPECT_LT(after - (before - light), 0.1 * light);
+}
+
 TEST(PsvgfHistory, ChangedGeometryIsDroppedWhereItChanged) {
     PlanesScene scene;
     const auto camera = looking_at(scene, {}, Width, Height);
