@@ -44,6 +44,25 @@ TEST(Noise, OfFineShadowsIsThatOfDarkPixels) {
     EXPECT_NEAR(NoiseMap(picture.film()).noise() / expected, 1.0, 0.1);
 }
 
+// Light that few samples find: they are compared with the brightness that is expected, not with what they found. (Each counted
+// among its own neighbours, the estimate was a third of the noise.)
+TEST(Noise, OfRareLightIsThatOfItsFinds) {
+    double estimated = 0.0, expected = 0.0;
+    constexpr double Chance = 1e-4, Light = 300.0;
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+        const SimulatedPicture picture(
+            64, 64, 32,
+            [&](std::int32_t, std::int32_t, CounterRandom& random) {
+                return random.uniform() < Chance ? float(Light) : 0.5f;
+            },
+            seed);
+        const double noise = NoiseMap(picture.film()).noise(), mean = 0.5 + Chance * Light;
+        estimated += noise * noise;
+        expected += Chance * Light * Light / 16.0 / (1.01 * mean * mean);
+    }
+    EXPECT_NEAR(std::sqrt(estimated / expected), 1.0, 0.25);
+}
+
 TEST(Noise, DoesNotDependOnTheScaleOfTheLight) {
     frame::FilmTile film = SimulatedPicture(32, 32, 32, uniform_noise(0.4)).film();
     const double noise = NoiseMap(film).noise();
