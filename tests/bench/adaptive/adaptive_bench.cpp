@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mediator/filter/inputs.h"
 #include "mediator/frame/resolve.h"
 #include "tests/bench/adaptive/adaptive_film.h"
+#include "tests/bench/filters/filter_run.h"
 #include "tests/bench/filters/looks.h"
 #include "tests/bench/filters/references.h"
 
@@ -19,14 +21,11 @@ constexpr frame::ChannelSet AdaptiveChannels{frame::Channel::Radiance, frame::Ch
 // Sums over the seeds.
 struct Errors {
     double all = 0.0, trimmed = 0.0, light = 0.0;
-    // Returns the relMSE.
-    double add(const frame::FilmTile& film, const ReferencePair& truth) {
-        const frame::Image picture = frame::resolve_picture(film);
+    void add(const frame::Image& picture, const ReferencePair& truth) {
         const SquaredErrors errors = squared_errors(picture, truth);
         all += errors.relmse.all.value;
         trimmed += errors.relmse.trimmed.value;
         light += mean_luminance(picture);
-        return errors.relmse.all.value;
     }
 };
 
@@ -71,8 +70,17 @@ class AdaptiveMeasurement {
     static constexpr std::uint64_t MostSamples = 1 << 16;  // of a pixel
 
     view::View view(std::uint64_t seed) const {
-        return sampler_.view(plan_.size.width, plan_.size.height, AdaptiveChannels, view::PathClass::Indirect,
-                             seed);
+        frame::ChannelSet channels = AdaptiveChannels;
+        if (plan_.filter) channels = channels | filter::wanted_channels(*plan_.filter, {});
+        const auto path_class =
+            plan_.filter ? plan_.filter->entry->description.path_class : view::PathClass::Indirect;
+        return sampler_.view(plan_.size.width, plan_.size.height, channels, path_class, seed);
+    }
+
+    frame::Image picture(const frame::FilmTile& film, const view::View& view) const {
+        if (!plan_.filter) return frame::resolve_picture(film);
+        return FilterRun(*plan_.filter, plan_.size.width, plan_.size.height, arena_)
+            .picture(filter::make_inputs(film, view));
     }
 
     std::optional<AdaptiveRow> measure(const master::AdaptiveSettings& settings, const ReferencePair& truth) {
@@ -89,7 +97,8 @@ class AdaptiveMeasurement {
             const auto film = adaptive_film(sampler_, view(seed), settings, arena_, stop_);
             if (!film) return std::nullopt;
             const double spp = double(film->samples) / double(film->whole.pixel_count());
-            const double error = adaptive.add(film->whole, truth);
+            adaptive.add(picture(film->whole, view(seed)), truth);
+            const double error = squared_errors(frame::resolve_picture(film->whole), truth).relmse.all.value;
             row.true_noise.push_back(std::sqrt(std::max(0.0, error)) /
                                      (settings.noise > 0.0 ? settings.noise : film->noise));
             row.spp += spp / plan_.seeds;
@@ -99,7 +108,7 @@ class AdaptiveMeasurement {
             GrowingFilm same = sampler_.film(view(seed));
             if (!sampler_.grow(same, static_cast<std::uint64_t>(std::lround(spp)), stop_))
                 return std::nullopt;
-            uniform.add(same.whole(), truth);
+            uniform.add(picture(same.whole(), view(seed)), truth);
         }
         row.gain = uniform.all / adaptive.all;
         row.trimmed_gain = uniform.trimmed / adaptive.trimmed;

@@ -9,6 +9,7 @@
 
 #include "client/tools/host_info.h"
 #include "client/tools/interrupts.h"
+#include "master/filter/catalog.h"
 #include "tests/bench/adaptive/adaptive_bench.h"
 #include "tests/bench/filters/plan.h"
 #include "tests/bench/scene_loop.h"
@@ -20,7 +21,7 @@ namespace {
 constexpr const char* AdaptiveName = "bench adaptive";
 
 struct AdaptiveOptions {
-    std::string assets = "tests/scenes", references = "adaptive-references", scenes, spp = "32",
+    std::string assets = "tests/scenes", references = "adaptive-references", scenes, filter, spp = "32",
                 noise = "0.2,0.1", size = "96x54";
     std::uint64_t reference_spp = 8192;
     std::uint32_t seeds = 4, jobs = 0;
@@ -56,6 +57,11 @@ Expected<AdaptivePlan> parse_options(const AdaptiveOptions& options) {
     auto noise = parse_noise(options.noise);
     if (!noise) return tl::unexpected(noise.error());
     plan.noise = std::move(*noise);
+    if (!options.filter.empty()) {
+        auto choice = filter::parse_choice(options.filter, filter::catalog());
+        if (!choice) return failure(ErrorCode::InvalidInput, std::string("--filter: ") + choice.error().what());
+        plan.filter = std::move(*choice);
+    }
     const auto size = parse_size(options.size);
     if (!size) return failure(ErrorCode::InvalidInput, std::string("--size: ") + size.error().what());
     plan.size = *size;
@@ -134,14 +140,15 @@ Command adaptive_command(cli::CommandLine& bench) {
                                            "ones: 'gain' is the relMSE of uniform over that of "
                                            "adaptive samples, 'trimmed' the same without one pixel in a "
                                            "thousand, 'light' the mean luminance over that of "
-                                           "uniform samples. 'true noise' is the root of the true relMSE "
-                                           "over the noise that was asked for, or over its "
+                                           "uniform samples. 'true noise' is the root of the true relMSE of "
+                                           "the unfiltered picture over the noise that was asked for, or over its "
                                            "estimate where a number of samples was: smallest, median and "
                                            "largest of the seeds. 'deciding' is the part of the "
                                            "time that the choice of pixels takes.");
     line.option("--scenes", "a,b: built-in scenes or scene files (default: all)", options->scenes);
     line.option("--spp", "mean samples per pixel to compare at, 16 or more", options->spp);
     line.option("--noise", "noise to stop at", options->noise);
+    line.option("--filter", "compare the pictures of this filter (default: unfiltered ones)", options->filter);
     line.option("--size", "picture size", options->size);
     line.option("--seeds", "number of films", options->seeds);
     line.option("--reference-spp", "samples per pixel of each of two references", options->reference_spp);
