@@ -13,7 +13,9 @@
 #include "mediator/frame/resolve.h"
 #include "mediator/picture/atomic_file.h"
 #include "mediator/picture/exposure.h"
+#include "mediator/picture/heat_map.h"
 #include "mediator/picture/mark_tiles.h"
+#include "mediator/picture/noise_map.h"
 #include "mediator/picture/picture_encoder.h"
 #include "mediator/program/command_line.h"
 
@@ -171,6 +173,13 @@ void write_picture(const std::string& path, const frame::Image& image,
                                               : format == PictureFormat::Jpeg ? FileFormat::Jpeg
                                                                               : FileFormat::Exr,
                                               transform, custom));
+}
+
+void write_noise_map(const std::string& path, const frame::FilmTile& film) {
+    const frame::Image image =
+        picture::heat_map(picture::noise_of_pixels(film), static_cast<std::uint32_t>(film.rect.width),
+                          static_cast<std::uint32_t>(film.rect.height), 0.01f, 1.0f);
+    write_picture(path, image, {view::ViewTransform::Linear, 0.0});
 }
 
 view::DisplayTransform used_transform(const std::vector<std::string>& paths,

@@ -33,6 +33,9 @@ void write_pictures(const std::vector<std::string>& paths, const session::ViewRe
 void write_picture(const std::string& path, const frame::Image& image,
                    const view::DisplayTransform& transform, const picture::CustomView* custom = nullptr);
 
+// A PNG of the relative error of each pixel (mediator/picture/noise_map.h) on a logarithmic scale from 0.01 to 1.
+void write_noise_map(const std::string& path, const frame::FilmTile& film);
+
 // The transform of the request with the exposure of the result: the master's where it encoded the picture,
 // else measured of the picture that would be written; none if that is black, so that a sequence which fades in
 // takes the exposure of its first frame with light. Unchanged if it has an exposure, or if all paths are EXR.

@@ -34,7 +34,7 @@ std::string describe(const session::ViewProgress& progress, const session::ViewR
         case session::Phase::Rendering:
             break;
     }
-    const bool by_time = request.stop.time_limit > Duration::zero() && !request.stop.is_adaptive();
+    const bool by_time = request.stop.time_limit > Duration::zero() && request.stop.noise == 0.0;
     const double elapsed = std::max(seconds(progress.elapsed), 1e-3);
     const double expected = double(std::max<std::uint64_t>(progress.samples_expected, 1));
     const double done = std::min(
@@ -42,10 +42,11 @@ std::string describe(const session::ViewProgress& progress, const session::ViewR
     const double spp =
         double(progress.samples) / double(std::max<std::size_t>(request.view.window.pixel_count(), 1));
     std::string text = formatted("%3.0f %%   ", 100.0 * done);
-    if (request.stop.is_adaptive()) {
+    if (request.stop.has_steps()) {
         text += formatted("%.1f spp", spp);
-        if (progress.noise > 0.0)
-            text += formatted("   noise %.3g of %.3g", progress.noise, request.stop.noise);
+        if (progress.noise > 0.0) text += formatted("   noise %.3g", progress.noise);
+        if (progress.noise > 0.0 && request.stop.noise > 0.0)
+            text += formatted(" of %.3g", request.stop.noise);
     } else {
         text += by_time
                     ? formatted("%.1f spp", spp)

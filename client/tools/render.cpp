@@ -234,9 +234,14 @@ class Render {
         write_pictures(outputs, plan_.job, result_,
                        {std::filesystem::path(plan_.view.scene).filename().string(), camera_.name, hash},
                        plan_.statistics, custom);
+        std::vector<std::string> written = outputs;
+        if (plan_.noise_map) {
+            write_noise_map(*plan_.noise_map, *result_.film());
+            written.push_back(*plan_.noise_map);
+        }
         const RenderReport report{plan_.job, result_.summary, seconds(clock_.now() - started_),
                                   hash,      frame_,          custom};
-        std::cout << (json_ ? as_json(report) : as_text(report, outputs)) << std::endl;
+        std::cout << (json_ ? as_json(report) : as_text(report, written)) << std::endl;
         if (result_.summary.outcome == Outcome::Stopped)
             return interrupted("the samples merged so far were written");
         if (result_.summary.outcome == Outcome::NoNodes)

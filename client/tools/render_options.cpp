@@ -70,14 +70,22 @@ Expected<void> set_amount(const RenderOptions& options, session::ViewRequest& jo
     if (options.noise) {
         if (!(*options.noise > 0.0 && *options.noise <= 1.0)) return wrong("--noise: above 0, up to 1");
         job.stop.noise = *options.noise;
-    } else if (options.spp && options.time) {
-        return wrong("--spp and --time exclude each other; with --noise both are upper bounds");
+    }
+    if (options.adaptive) {
+        if (*options.adaptive != "on" && *options.adaptive != "off") return wrong("--adaptive: on or off");
+        const bool has_steps = options.noise || (options.time && !options.spp);
+        if (*options.adaptive == "on" && !has_steps)
+            return wrong(
+                "--adaptive on: with --spp alone all pixels have as many samples; add --noise or use --time");
+        job.stop.uniform = *options.adaptive == "off";
     }
     if (options.time) {
         const auto limit = parse_duration(*options.time);
         if (!limit) return wrong(std::string("--time: ") + limit.error().what());
         job.stop.time_limit = *limit;
         job.stop.spp = options.spp.value_or(options.noise ? MostSamples : MaxSpp);
+        if (options.spp && !options.noise)
+            job.stop.uniform = true;  // the time is only a bound of these samples
     } else {
         job.stop.spp = options.spp.value_or(options.noise ? MostSamples : job.stop.spp);
     }
@@ -112,6 +120,17 @@ Expected<void> set_sequence(const RenderOptions& options, RenderPlan& plan) {
     return {};
 }
 
+Expected<void> check_noise_map(const RenderOptions& options) {
+    if (!options.noise_map) return {};
+    if (picture_format(*options.noise_map) != PictureFormat::Png)
+        return wrong("--noise-map: '" + *options.noise_map + "' does not end with .png");
+    if (options.frames)
+        return wrong("--noise-map and --frames exclude each other: look at the layer 'noise' of EXR files");
+    if (options.detach)
+        return wrong("--noise-map and --detach exclude each other: store an EXR, which has a layer 'noise'");
+    return {};
+}
+
 // Channels (AOVs) are requested only if an EXR is written.
 bool any_exr(const std::vector<std::string>& outputs) {
     return std::any_of(outputs.begin(), outputs.end(), [](const std::string& output) {
@@ -128,6 +147,7 @@ frame::ChannelSet channels_for(const RenderOptions& options) {
     }
     if (any_exr(options.outputs))
         return {Radiance, LowVariance, HighVariance, Albedo, Normal, Depth, ObjectIndex, BlockVariance};
+    if (options.noise_map) return {Radiance, BlockVariance};
     return {Radiance};
 }
 
@@ -147,7 +167,7 @@ Expected<void> set_filter(const RenderOptions& options, session::ViewRequest& jo
         if (auto fine = check_available(*filter); !fine) return fine;
     }
     if (options.detach) return {};  // see set_detached()
-    job.film = any_exr(options.outputs);
+    job.film = any_exr(options.outputs) || options.noise_map;
     const PictureFormat format = *picture_format(options.outputs.front());
     job.picture = options.outputs.size() > 1 || job.film ? session::PictureEncoding::Planes
                   : format == PictureFormat::Png         ? session::PictureEncoding::Png
@@ -249,15 +269,25 @@ void RenderOptions::add_to(cli::CommandLine& command) {
     command.option("-o,--output", "picture to write, .exr, .png or .jpg; may be given several times",
                    outputs);
     command.option("--spp", "samples per pixel (64)", spp);
-    command.option(
-        "--time",
-        "time budget instead of --spp, as 800ms or 10s; with --denoise it includes denoising and encoding",
-        time);
+    command.option("--time",
+                   "time budget, as 800ms or 10s, spent on the pixels that need it; with --denoise it "
+                   "includes denoising "
+                   "and encoding; with --spp or --noise an upper bound",
+                   time);
     command.option(
         "--noise",
         "samples where they are needed, until the unfiltered picture has this relative error (the root "
         "of relMSE, as of tessera compare), say 0.02; --spp (of any pixel) and --time are upper bounds",
         noise);
+    command.option(
+        "--adaptive",
+        "on (default): with --time or --noise each pixel has the samples that it needs; off: all have "
+        "as many",
+        adaptive);
+    command.option(
+        "--noise-map",
+        "also write a PNG of the noise of each pixel, from 0.01 (black) over 0.1 (red) to 1 (white)",
+        noise_map);
     command.option("--frames", "render frames A:B of the animation, each to its own -o out.%04d.exr", frames);
     command.option(
         "--fps",
@@ -303,6 +333,8 @@ Expected<RenderPlan> parse_options(const RenderOptions& options) {
     plan.job.film = true;
     plan.job.wait_limit = std::chrono::seconds(60);
     if (auto fine = check_outputs(options); !fine) return tl::unexpected(fine.error());
+    if (auto fine = check_noise_map(options); !fine) return tl::unexpected(fine.error());
+    plan.noise_map = options.noise_map;
     if (auto fine = set_sequence(options, plan); !fine) return tl::unexpected(fine.error());
     auto embedded = embedded_settings(options);
     if (!embedded) return tl::unexpected(embedded.error());

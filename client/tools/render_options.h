@@ -23,6 +23,7 @@ struct RenderOptions {
     std::optional<std::uint64_t> spp, nodes, threads;
     std::optional<std::string> time, backend, device, cache, master, keys, wait_nodes, frames;
     std::optional<double> fps, noise;
+    std::optional<std::string> adaptive, noise_map;
     std::string user = "editor";
     std::string policy = "mixed";
     FilterOption filter;
@@ -49,8 +50,9 @@ struct Sequence {
 // The validated options.
 struct RenderPlan {
     ViewPlan view;
-    session::ViewRequest job;          // view with channels, without camera
-    std::vector<std::string> outputs;  // of a sequence: patterns for frame_name
+    session::ViewRequest job;              // view with channels, without camera
+    std::vector<std::string> outputs;      // of a sequence: patterns for frame_name
+    std::optional<std::string> noise_map;  // a picture of the noise, as write_noise_map() does
     std::optional<Sequence> sequence;
     std::optional<client::Address> address;  // none: embedded cluster
     EmbeddedSettings embedded;

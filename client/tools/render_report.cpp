@@ -22,7 +22,7 @@ double per_second(std::uint64_t amount, double time) {
 
 // The requested number if it was reached.
 Json spp_value(const session::ViewRequest& request, const session::ViewSummary& result) {
-    if (result.outcome == session::Outcome::Complete && !request.stop.is_adaptive()) return request.stop.spp;
+    if (result.outcome == session::Outcome::Complete && !request.stop.has_steps()) return request.stop.spp;
     return samples_per_pixel(request, result);
 }
 
@@ -74,16 +74,20 @@ Json picture_value(const session::ViewSummary& result) {
             {"notes", picture.notes}};
 }
 
-// What ended a picture that was to have a noise.
+// The noise of a picture that was to have one, and what ended it; or of one that had a time.
 std::string noise_text(const session::StopRule& stop, const session::ViewSummary& result) {
-    if (!stop.is_adaptive()) return "noise unknown: it takes 16 samples of a pixel, and --spp 32 or more";
+    const bool is_late =
+        result.outcome == session::Outcome::TimeUp;  // samples have come since the last decision
+    if (stop.noise == 0.0) return result.noise > 0.0 ? formatted("noise %.3g or less", result.noise) : "";
+    if (!stop.has_steps()) return "noise unknown: it takes 16 samples of a pixel, and --spp 32 or more";
     const bool is_complete = result.outcome == session::Outcome::Complete;
     const bool is_known = result.noise > 0.0 || is_complete;  // 0: it is black
     if (is_known && result.noise <= stop.noise) return formatted("noise %.3g: as wanted", result.noise);
-    return (is_known ? formatted("noise %.3g: ", result.noise) : std::string("noise unknown: ")) +
-           (result.outcome == session::Outcome::TimeUp ? "the time was up before it was as wanted"
-            : is_complete                              ? "--spp was reached before it was as wanted"
-                                                       : "the picture ended before it was as wanted");
+    return (is_known ? formatted("noise %.3g%s: ", result.noise, is_late ? " or less" : "")
+                     : std::string("noise unknown: ")) +
+           (is_late       ? "the time was up before it was as wanted"
+            : is_complete ? "--spp was reached before it was as wanted"
+                          : "the picture ended before it was as wanted");
 }
 
 }  // namespace
@@ -159,7 +163,8 @@ std::string as_text(const RenderReport& report, const std::vector<std::string>& 
     line("%.2f s in all, %.2f s rendering: %.2f Mrays/s, %.3f Msamples/s", report.seconds_total,
          result.seconds_render, per_second(result.rays, result.seconds_render) * 1e-6,
          per_second(result.samples, result.seconds_render) * 1e-6);
-    if (report.request.stop.noise > 0.0) line("%s", noise_text(report.request.stop, result).c_str());
+    if (const std::string noise = noise_text(report.request.stop, result); !noise.empty())
+        line("%s", noise.c_str());
     if (const auto& picture = result.picture; picture.encoding != session::PictureEncoding::None) {
         line(
             "filter %s: %.1f ms, encoding %.1f ms%s", picture.filter.c_str(), picture.seconds_filter * 1e3,

@@ -22,7 +22,7 @@ const filter::Description* denoiser_of(const view::View& view) {
 
 void ViewMemory::add(const session::ViewRequest& request) {
     bytes_ += film_bytes(request.view);
-    if (request.stop.is_adaptive()) {  // a decision reads a copy of the film
+    if (request.stop.has_steps()) {  // a decision reads a copy of the film
         bytes_ +=
             film_bytes(request.view) + picture::NoiseMap::BytesPerPixel * request.view.window.pixel_count();
     }

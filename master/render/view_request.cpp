@@ -117,7 +117,8 @@ void complete(view::View& view) {
 
 void complete(session::ViewRequest& request) {
     complete(request.view);
-    if (!request.stop.is_adaptive()) return;
+    if (request.frames == session::Frames::All) request.stop.uniform = true;
+    if (!request.stop.has_steps()) return;
     request.view.channels.insert(frame::Channel::Radiance);
     request.view.channels.insert(frame::Channel::BlockVariance);
 }

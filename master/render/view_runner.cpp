@@ -102,7 +102,7 @@ PlanSettings ViewRunner::plan_of(const ViewState& view) const {
     // with a budget the filter needs a variance, which takes 2.
     if (pass.kind == Pass::Kind::Picture && !view.shows_all())
         plan.first_level = !view.run.deadline ? 2u : view.request.stop.has_budget() ? 1u : 0u;
-    if (pass.kind == Pass::Kind::Picture && view.request.stop.is_adaptive()) {
+    if (pass.kind == Pass::Kind::Picture && view.request.stop.has_steps()) {
         plan.is_adaptive = true;
         plan.spp = session::StopRule::AdaptiveBase;
     }
@@ -114,7 +114,8 @@ PlanSettings ViewRunner::plan_of(const ViewState& view) const {
 void ViewRunner::begin_pass(ViewState& view, EarlierFilm&& earlier) {
     passes_.begin(view.pass(), plan_of(view), requirements(view), view.run.deadline, std::move(earlier));
     Scheduler& scheduler = *passes_.dispatcher.find(view.pass().view.id);
-    view.run.samples_expected = scheduler.merged_samples() + scheduler.remaining_samples();
+    view.run.samples_restored = scheduler.merged_samples();
+    view.run.samples_expected = view.run.samples_restored + scheduler.remaining_samples();
     // What failed in a coarse pass would fail again, and cost more nodes.
     for (std::uint32_t tile = 0; tile < scheduler.tiles().size(); ++tile) {
         const Rect rect = in_full_size(view, view.pass(), scheduler.tiles()[tile]);
@@ -210,7 +211,7 @@ void ViewRunner::advance_picture(ViewState& view, TimePoint now) {
                 now);
         }
     }
-    if (!run.outcome && view.request.stop.is_adaptive() && scheduler.paused()) request_step(view);
+    if (!run.outcome && view.request.stop.has_steps() && scheduler.paused()) request_step(view, now);
     const bool is_settled = scheduler.idle() || now - run.outcome_at > settings_.stop_grace;
     if (run.outcome && !run.is_over() && is_settled && !scheduler.is_merging()) return finish(view, now);
     if (is_whole) show(view, now);

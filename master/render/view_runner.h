@@ -81,7 +81,7 @@ class ViewRunner {
     PlanSettings plan_of(const ViewState& view) const;
     void advance_to_next_pass(ViewState& view, TimePoint now);
     void advance_picture(ViewState& view, TimePoint now);
-    void request_step(ViewState& view);
+    void request_step(ViewState& view, TimePoint now);
     bool drops_test_patterns(ViewState& view);
     void observe(ViewState& view, TimePoint now);
     void collect_failed_tiles(ViewState& view);

@@ -1,20 +1,45 @@
 // The steps of adaptive pictures.
+#include <algorithm>
+
 #include "master/render/view_runner.h"
 
 namespace tessera::master {
 
-void ViewRunner::request_step(ViewState& view) {
+namespace {
+
+// With nothing but a clock: as many samples as the rest of the time has room for, if it has room for a decision.
+void spend_time(const ViewState& view, TimePoint now, AdaptiveSettings& settings) {
+    constexpr double LeastSpp = 0.25, MostDeciding = 0.1;  // of the rest
+    const Run& run = view.run;
+    const double left = seconds(*run.deadline - now),
+                 deciding = seconds(run.deciding) / std::max(run.steps, 1u);
+    const double rate = double(run.samples - run.samples_restored) /
+                        std::max(seconds(now - run.rendering_since - run.deciding), 1e-3);
+    const double samples = rate * left;
+    if (run.step_is_uniform || samples < LeastSpp * double(view.request.view.window.pixel_count()) ||
+        deciding > MostDeciding * left) {
+        settings.uniform = true;
+    } else {
+        settings.samples = run.samples + static_cast<std::uint64_t>(std::min(samples, 1e18));
+    }
+}
+
+}  // namespace
+
+void ViewRunner::request_step(ViewState& view, TimePoint now) {
     Run& run = view.run;
+    const session::StopRule& stop = view.request.stop;
     const ViewId pass = view.pass().view.id;
     if (run.is_deciding || passes_.dispatcher.find(pass)->complete()) return;
     run.is_deciding = true;
+    run.deciding_since = now;
     std::vector<std::uint32_t> closed;
     for (const TileFailure& failure : passes_.dispatcher.find(pass)->failed_tiles())
         closed.push_back(failure.tile);
-    passes_.film.decide(
-        pass, view.pass().view.revision,
-        {.noise = view.request.stop.noise, .max_samples = view.request.stop.max_samples(), .step = run.steps},
-        std::move(closed));
+    AdaptiveSettings settings{
+        .noise = stop.noise, .max_samples = stop.spp, .step = run.steps, .uniform = stop.uniform};
+    if (stop.noise == 0.0 && run.deadline) spend_time(view, now, settings);
+    passes_.film.decide(pass, view.pass().view.revision, settings, std::move(closed));
 }
 
 void ViewRunner::take(ViewState& view, StepDecision&& decision, TimePoint now) {
@@ -23,6 +48,14 @@ void ViewRunner::take(ViewState& view, StepDecision&& decision, TimePoint now) {
         view.pass().view.revision != decision.revision || !run.is_deciding)
         return;
     run.is_deciding = false;
+    run.deciding += now - run.deciding_since;
+    const bool has_chosen = !decision.step.rounds.empty();
+    if (!has_chosen && !run.outcome && view.request.stop.noise == 0.0 && !run.step_is_uniform) {
+        // No light was found yet, or the samples that are left are fewer than a pixel would get.
+        run.step_is_uniform = true;
+        return request_step(view, now);
+    }
+    run.step_is_uniform = false;
     run.noise = decision.step.noise;
     run.samples_expected = decision.step.samples_expected;
     ++run.steps;

@@ -33,8 +33,8 @@ std::vector<Pass> passes_of(const ViewState& state, std::uint32_t coarsest) {
     }
     const bool upsampled = state.run.scale > 1;
     if (upsampled) passes.push_back({.view = feature_view(whole), .kind = Pass::Kind::Features});
-    passes.push_back({.view = upsampled ? scaled_view(whole, state.run.scale) : whole,
-                      .spp = state.request.stop.max_samples()});
+    passes.push_back(
+        {.view = upsampled ? scaled_view(whole, state.run.scale) : whole, .spp = state.request.stop.spp});
     const std::uint64_t seed = seed_of_film(state);
     for (std::size_t i = 0; i < passes.size(); ++i) {
         passes[i].view.id = ViewId{state.id.value + i};

@@ -52,13 +52,17 @@ struct Run {
     std::string message;  // why, unless complete
     std::optional<TimePoint> first_picture, ended;
     std::uint64_t samples = 0;                     // merged in the current pass, of all pixels
+    std::uint64_t samples_restored = 0;            // of these, before the master was restarted
     TimePoint seen_at{};                           // when `samples` was updated
     std::map<NodeId, session::NodeSummary> nodes;  // all that took part, including disconnected ones
     session::UnitCounts units;                     // of the current pass
     std::uint64_t rays = 0, nonfinite_samples = 0;
     std::uint32_t steps = 0;   // of an adaptive picture
     bool is_deciding = false;  // the next one
-    double noise = 0.0;        // as of the last decision; 0: unknown
+    TimePoint deciding_since{};
+    Duration deciding{0};          // in all steps
+    bool step_is_uniform = false;  // with nothing but a clock: no pixel was chosen by its noise
+    double noise = 0.0;            // as of the last decision; 0: unknown
     std::uint64_t samples_expected = 0;
     session::WireBytes bytes_before;  // the master's counters at the start
 

@@ -34,8 +34,8 @@ session::ViewProgress progress_of(const ViewState& view, std::uint32_t nodes) {
     const view::View& last = view.passes.empty() ? view.request.view : view.passes.back().view;
     progress.samples = view.run.samples;
     const std::uint64_t pixels = last.window.pixel_count();
-    progress.samples_expected = pixels * view.request.stop.max_samples();
-    if (view.request.stop.is_adaptive())
+    progress.samples_expected = pixels * view.request.stop.spp;
+    if (view.request.stop.has_steps())
         progress.samples_expected =
             std::max(view.run.samples_expected, pixels * session::StopRule::AdaptiveBase);
     progress.noise = view.run.noise;

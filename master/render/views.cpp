@@ -132,7 +132,7 @@ void Views::change(ViewState& view, session::ViewRequest&& request, Version vers
         const FilterChange change = filter_change(view.request.view, request.view.filter);
         const bool goes_on = change.effect == FilterChange::Effect::Kept ||
                              (change.effect == FilterChange::Effect::Widened && !view.run.outcome &&
-                              !view.request.stop.is_adaptive());
+                              !view.request.stop.has_steps());
         if (goes_on) {
             view.camera_revision = view.asked_revision;
             return runner_.change_filter(view, change, now);
@@ -238,10 +238,11 @@ std::string Views::set_filter(const SessionRecord& asker, const std::string& nam
     const bool has_features_first = !view.passes.empty() && !view.is_last_pass();
     if (has_features_first) refuse("the frame has just begun: try again in a moment");
     if (change.effect == FilterChange::Effect::Restarted) refuse(change.text);
-    if (change.effect == FilterChange::Effect::Widened && view.request.stop.is_adaptive()) {
+    if (change.effect == FilterChange::Effect::Widened && view.request.stop.has_steps()) {
         refuse("filter '" + filter +
-               "' needs channels that this frame lacks, and one that stops at a noise gets no more of them: "
-               "start it with the filter");
+               "' needs channels that this frame lacks, and one whose pixels have the samples that they need "
+               "gets no "
+               "more of them: start it with the filter");
     }
     runner_.change_filter(view, change, now);
     return change.text;

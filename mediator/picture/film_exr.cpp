@@ -80,10 +80,7 @@ void add_variances(const frame::FilmTile& film, std::vector<Layer>& layers) {
 // As adaptive sampling sees it.
 Layer noise_layer(const frame::FilmTile& film) {
     Layer layer{"noise", {"Y"}, frame::Image(film.rect.width, film.rect.height, 1)};
-    const NoiseMap map(film);
-    for (std::size_t i = 0; i < film.pixel_count(); ++i)
-        layer.image.values[i] =
-            film.counts[i] < 2 ? 0.0f : map.deviations()[i] / std::sqrt(static_cast<float>(film.counts[i]));
+    layer.image.values = noise_of_pixels(film);
     return layer;
 }
 

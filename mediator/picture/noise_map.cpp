@@ -172,4 +172,11 @@ NoiseMap::NoiseMap(const frame::FilmTile& film) : deviations_(film.pixel_count()
     for (float& deviation : deviations_) deviation = std::sqrt(deviation * deviation + rare);
 }
 
+std::vector<float> noise_of_pixels(const frame::FilmTile& film) {
+    std::vector<float> noise = NoiseMap(film).deviations();
+    for (std::size_t i = 0; i < noise.size(); ++i)
+        noise[i] = film.counts[i] < 2 ? 0.0f : noise[i] / std::sqrt(static_cast<float>(film.counts[i]));
+    return noise;
+}
+
 }  // namespace tessera::picture

@@ -50,4 +50,7 @@ class NoiseMap {
     double noise_ = 0.0;
 };
 
+// Relative error of each pixel: its averaged deviation over the root of its samples; 0 with fewer than two.
+std::vector<float> noise_of_pixels(const frame::FilmTile& film);
+
 }  // namespace tessera::picture

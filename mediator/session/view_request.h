@@ -40,25 +40,22 @@ inline constexpr std::uint64_t MaxSamplesPerPixel = std::uint64_t{1} << 31;  // 
 
 // When a view has enough samples. Pure.
 struct StopRule {
-    std::uint64_t spp = 64;
+    std::uint64_t spp = 64;  // of any pixel
     Duration time_limit{0};  // of sampling; 0 = none
     Duration budget{0};      // not 0: time from the start to the encoded picture, filter included
     bool adapts_size =
         false;  // if the budget is too small for 2 samples per pixel: render at half or a quarter of the size
-    // Not 0: samples where they are needed until the unfiltered picture has this estimated sqrt(relMSE); spp and times
-    // are upper bounds.
+    // Not 0: until the unfiltered picture has this estimated sqrt(relMSE); spp and times are upper bounds.
     double noise = 0.0;
+    // All pixels have as many samples; else, if noise or time end the picture, they have what they need.
+    bool uniform = false;
 
     bool has_budget() const { return budget > Duration::zero(); }
     // What every pixel gets before the first decision: fewer say too little.
     static constexpr std::uint64_t AdaptiveBase = 16;
-    bool is_adaptive() const { return noise > 0.0 && max_samples() > AdaptiveBase; }
+    // After AdaptiveBase samples there are steps, each with a decision.
+    bool has_steps() const { return (noise > 0.0 || (has_clock() && !uniform)) && spp > AdaptiveBase; }
     bool has_clock() const { return has_budget() || time_limit > Duration::zero(); }
-    // The maximum number of samples per pixel.
-    std::uint64_t max_samples() const {
-        return has_budget() || (has_clock() && spp == 0) ? MaxSamplesPerPixel : spp;
-    }
-
     // When sampling must end, given when the nodes were ready and the predicted time of filter and encoding.
     std::optional<TimePoint> deadline(TimePoint ready, TimePoint now, Duration afterwards) const {
         if (has_budget()) return std::max(now, ready + budget - afterwards);
@@ -78,7 +75,7 @@ struct StopRule {
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "spp", &StopRule::spp), row(2, "time_limit", &StopRule::time_limit),
                           row(3, "budget", &StopRule::budget), row(4, "adapts_size", &StopRule::adapts_size),
-                          row(5, "noise", &StopRule::noise));
+                          row(5, "noise", &StopRule::noise), row(6, "uniform", &StopRule::uniform));
     }
 };
 

@@ -9,6 +9,7 @@
 
 #include "mediator/frame/resolve.h"
 #include "tests/cluster/cluster_scene.h"
+#include "tests/cluster/lit_room.h"
 #include "tests/cluster/loopback_cluster.h"
 
 namespace tessera::test {
@@ -30,10 +31,11 @@ session::ViewRequest adaptive_request(double noise, Policy policy = Policy::Mixe
     return request;
 }
 
-client::ViewResult render_adaptive(LoopbackCluster& cluster, const session::ViewRequest& request) {
+client::ViewResult render_adaptive(LoopbackCluster& cluster, const session::ViewRequest& request,
+                                   session::Outcome outcome = session::Outcome::Complete) {
     const auto session = cluster.batch(std::make_shared<BlobStore>());
     client::ViewResult result = client::render(*session, request, {}, {});
-    EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
+    EXPECT_EQ(result.summary.outcome, outcome) << result.summary.message;
     return result;
 }
 
@@ -133,13 +135,50 @@ TEST(AdaptiveViews, EndWhenTheirTimeIsUp) {
     cluster.add_node("null", {}, 5us);
     session::ViewRequest request = adaptive_request(1e-4);
     request.stop.time_limit = 1s;
-    const auto session = cluster.batch(std::make_shared<BlobStore>());
-    const client::ViewResult result = client::render(*session, request, {}, {});
-    EXPECT_EQ(result.summary.outcome, session::Outcome::TimeUp);
+    const client::ViewResult result = render_adaptive(cluster, request, session::Outcome::TimeUp);
     EXPECT_GT(result.summary.samples, 100u * 70u * 16u);
     std::uint64_t counted = 0;
     for (const std::uint32_t count : result.film()->counts) counted += count;
     EXPECT_EQ(counted, result.summary.samples) << "also of blocks that were not finished";
+}
+
+TEST(AdaptiveViews, SpendTimeWhereItIsNeeded) {
+    LoopbackCluster cluster;
+    cluster.add_node("embree");
+    const auto blobs = std::make_shared<BlobStore>();
+    const auto session = cluster.member("ann", blobs);
+    const LitRoom room{*session, *blobs};
+    ASSERT_TRUE(session->submit(room.entries()).accepted);
+    session::ViewRequest request = adaptive_request(0.0);
+    request.view.width = request.view.window.width = 50;  // enough samples, also on a busy machine
+    request.view.height = request.view.window.height = 35;
+    request.view.camera.world_from_camera[3][2] = 6.0;  // darkness around the room
+    request.stop = {.spp = session::MaxSamplesPerPixel, .time_limit = 2s};
+    const auto spread = [&] {
+        const client::ViewResult result = client::render(*session, request, {}, {});
+        EXPECT_EQ(result.summary.outcome, session::Outcome::TimeUp) << result.summary.message;
+        EXPECT_GT(result.summary.samples, 50u * 35u * 32u);
+        const auto [least, most] = std::ranges::minmax(result.film()->counts);
+        EXPECT_GE(least, 16u);
+        return double(most) / double(least);
+    };
+    EXPECT_GT(spread(), 2.0);
+    request.stop.uniform = true;
+    EXPECT_LE(spread(), 2.0) << "the round that was cut";
+}
+
+// No pixel is known to need them: they are uniform, until the time is up.
+TEST(AdaptiveViews, SpendTheirTimeInTheDark) {
+    LoopbackCluster cluster;
+    cluster.add_node("embree");
+    session::ViewRequest request = adaptive_request(0.0);
+    request.stop = {.spp = session::MaxSamplesPerPixel, .time_limit = 500ms};
+    const client::ViewResult result = render_adaptive(cluster, request, session::Outcome::TimeUp);
+    EXPECT_GT(result.summary.samples, 100u * 70u * 32u);
+    // With an end to their samples they end there.
+    request.stop = {.spp = 100, .time_limit = 60s};
+    const client::ViewResult whole = render_adaptive(cluster, request);
+    EXPECT_EQ(whole.summary.samples, 100u * 70u * 64u);
 }
 
 // A filter whose channels the film has is changed as usual; further channels would need another film.

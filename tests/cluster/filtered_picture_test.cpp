@@ -167,7 +167,7 @@ TEST(PictureRequest, AReproducibleFrameHasNoFilterWithOtherBitsElsewhere) {
 TEST(PictureRequest, WithABudgetEveryPixelHasTwoSamples) {
     session::ViewRequest request = picture_request("gauss");
     request.picture = PictureEncoding::Png;
-    request.stop.budget = 400ms;
+    request.stop = {.spp = session::MaxSamplesPerPixel, .budget = 400ms};
     const client::ViewResult result = render(2, request, 2us, 3);
     ASSERT_TRUE(result.has_picture()) << result.summary.message;
     EXPECT_EQ(result.summary.outcome, session::Outcome::TimeUp);
@@ -178,8 +178,7 @@ TEST(PictureRequest, WithABudgetEveryPixelHasTwoSamples) {
 // Once the rate is known, a budget that is too small renders a smaller picture and upsamples it.
 TEST(PictureRequest, ATooSmallBudgetGivesAnUpsampledPictureWithANote) {
     session::ViewRequest request = picture_request("gauss");
-    request.stop.budget = 150ms;
-    request.stop.adapts_size = true;
+    request.stop = {.spp = session::MaxSamplesPerPixel, .budget = 150ms, .adapts_size = true};
     const client::ViewResult result =
         render(1, request, 40us, 4);  // 2 samples of 5400 pixels: 0.4 s of one worker
     ASSERT_TRUE(result.has_picture()) << result.summary.message;

@@ -24,7 +24,7 @@ from .records import (Committed, HistoryEntry, Members, Progress, Status, Writer
 from .scene import Scene
 from .transaction import Transaction
 from .values import Blob, Object
-from .view import ALL_LAYERS, LAST_FRAME_ONLY, LIVE_FILTER, VIEW_TRANSFORMS, CameraLike, Rendered, View, plain_view
+from .view import ALL_LAYERS, LAST_FRAME_ONLY, LIVE_FILTER, MAX_SPP, VIEW_TRANSFORMS, CameraLike, Rendered, View, plain_view
 
 Message = Any
 _LOG = logging.getLogger("tessera")
@@ -290,7 +290,7 @@ class Session(SessionNames):
 
     # ---- views ----
 
-    def open_view(self, at: CameraLike, *, size: tuple[int, int] = (1280, 720), spp: int = 64, picture: str = "png",
+    def open_view(self, at: CameraLike, *, size: tuple[int, int] = (1280, 720), spp: int | None = None, picture: str = "png",
                   film: bool = False, name: str = "", filter: str | None = None, renderer: str = "path", bounces: int = 8,
                   seed: int = 0, channels: Sequence[str] = ("radiance",), layers: int = ALL_LAYERS,
                   clamp: float | None = None, budget: float | None = None, exposure: float | None = None,
@@ -300,37 +300,41 @@ class Session(SessionNames):
         object layer i; other objects are invisible. `clamp`: most that a path adds to a sample after its second bounce, which
         makes the picture too dark (biased); None: no limit. `filter`: the denoiser; None: "psvgf" for "png" and "jpeg"
         without `film`, else none. `budget`: time in seconds for samples, filter and encoding
-        together. `exposure` of "png" and "jpeg" in EV, None: measured once, on the first
+        together; `spp` is 64 by default, and without limit with a budget. `exposure` of "png" and "jpeg" in EV, None: measured once, on the first
         picture; `view_transform`: "neutral", "agx", "reinhard" or "linear"."""
         if filter is None:
             filter = LIVE_FILTER if picture in ("png", "jpeg") and not film else ""
         view = plain_view(size, channels=channels, renderer=renderer, bounces=bounces, seed=seed, filter=filter,
                           layers=layers, clamp=clamp)
         self.aim(view, at)
+        if spp is None:
+            spp = 64 if budget is None else MAX_SPP
         return self._open(self._request(view, spp, picture, film, name, budget, exposure, view_transform))
 
     def render(self, at: CameraLike, *, size: tuple[int, int] = (1280, 720), spp: int | None = None, picture: str = "png",
                film: bool = False, filter: str = "", renderer: str = "path", bounces: int = 8, seed: int = 0,
                channels: Sequence[str] = ("radiance",), layers: int = ALL_LAYERS, clamp: float | None = None,
                budget: float | None = None, exposure: float | None = None, view_transform: str = "neutral",
-               min_nodes: int = 1, wait: float = 60.0, noise: float | None = None,
+               min_nodes: int = 1, wait: float = 60.0, noise: float | None = None, adaptive: bool = True,
                on_progress: Callable[[Progress], None] | None = None) -> Rendered:
         """Renders one picture (arguments as in `open_view`) and returns its last frame and summary. Starts when `min_nodes` are
         ready, and gives up after `wait` seconds without nodes (outcome "no_nodes"). Calls `on_progress` with the progress.
 
-        `spp` is 64 by default. With `noise` pixels get the samples that they need, until the picture's relative error (root of
+        `spp` is 64 by default; with `budget` there is no limit, and pixels get the samples that they need. With `noise` pixels get the samples that they need, until the picture's relative error (root of
         relMSE, before the denoiser) is estimated to be that small: 0.02 is a clean picture. `spp` (of any pixel, 65536 by
-        default) and `budget` are upper bounds then."""
+        default) and `budget` are upper bounds then. Not `adaptive`: all pixels get as many samples."""
         view = plain_view(size, channels=channels, renderer=renderer, bounces=bounces, seed=seed, filter=filter,
                           layers=layers, clamp=clamp)
         self.aim(view, at)
+        ends_by_spp = noise is None and (spp is not None or budget is None)
         if spp is None:
-            spp = 64 if noise is None else 65536
+            spp = 65536 if noise is not None else 64 if budget is None else MAX_SPP
         request = self._request(view, spp, picture, film, "", budget, exposure, view_transform)
         if noise is not None:
             if not 0.0 < noise <= 1.0:
                 raise InvalidInput(f"noise: {noise} is not above 0 and up to 1")
             request.wanted.stop.noise = noise
+        request.wanted.stop.uniform = ends_by_spp or not adaptive
         request.wanted.frames, request.wanted.min_nodes = LAST_FRAME_ONLY, min_nodes
         request.wanted.wait_limit = int(wait * 1e9)
         opened = self._open(request)

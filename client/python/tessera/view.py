@@ -24,6 +24,7 @@ ALL_LAYERS = 0xFFFFFFFF
 RENDERERS = ("path", "whitted", "raster", "coverage")
 VIEW_TRANSFORMS = ("neutral", "agx", "reinhard", "linear")
 LIVE_FILTER = "psvgf"  # that of `tessera watch`
+MAX_SPP = 1 << 31
 LAST_FRAME_ONLY = 1  # of the frames of a view, by its number on the wire
 STALL_SECONDS = 5.0  # without further parts of a frame: the rest was lost
 

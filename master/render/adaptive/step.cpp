@@ -54,8 +54,12 @@ class Chooser {
 
     double noise() const { return noise_.noise(); }
     const std::vector<bool>& choose() {
-        choose_by_noise();
-        add_uniform();
+        if (settings_.uniform) {
+            choose_all();
+        } else {
+            choose_by_noise();
+            add_uniform();
+        }
         return is_chosen_;
     }
 
@@ -89,6 +93,10 @@ class Chooser {
         return doublings_[pixel] == 255 ? film_.counts[pixel] : std::uint64_t{1} << doublings_[pixel];
     }
 
+    void choose_all() {
+        for (std::size_t i = 0; i < is_chosen_.size(); ++i) is_chosen_[i] = may_have_more(i);
+    }
+
     void choose_by_noise() {
         const std::vector<float>& deviations = noise_.deviations();
         double sum = 0.0, error = 0.0;
@@ -106,7 +114,7 @@ class Chooser {
         std::vector<Candidate> candidates = candidates_if(
             [&](std::size_t pixel) { return double(samples(pixel)) * std::sqrt(2.0) <= best(pixel); });
         // All are within rounding of what they need.
-        if (candidates.empty() && allowed == Unlimited)
+        if (candidates.empty())
             candidates = candidates_if([&](std::size_t pixel) { return deviations[pixel] > 0.0f; });
         double reduction = 0.0;
         for (const Candidate& candidate : candidates)
@@ -184,7 +192,7 @@ Step next_step(const frame::FilmTile& film, std::span<const std::uint8_t> doubli
                std::span<const Rect> tiles, const AdaptiveSettings& settings) {
     Chooser chooser(film, doublings, settings);
     Step step{.noise = chooser.noise(), .rounds = {}};
-    if (step.noise <= settings.noise) {
+    if (settings.noise > 0.0 && step.noise <= settings.noise) {
         step.samples_expected = chooser.samples();
         return step;
     }

@@ -12,10 +12,11 @@
 namespace tessera::master {
 
 struct AdaptiveSettings {
-    double noise = 0.0;             // wanted sqrt(relMSE) of the unfiltered picture
-    std::uint64_t samples = 0;      // that all pixels may have together; 0: any number
+    double noise = 0.0;         // wanted sqrt(relMSE) of the unfiltered picture; 0: the best that can be had
+    std::uint64_t samples = 0;  // that all pixels may have together; 0: any number
     std::uint64_t max_samples = 0;  // of a pixel
     std::uint32_t step = 0;         // how many steps there were before
+    bool uniform = false;           // all pixels are doubled
 };
 
 // What an adaptive picture needs next. A pure function of the film, so that neither nodes nor the order of arrival matter.
@@ -33,7 +34,8 @@ struct Step {
 // e^2 / noise^2 of what it is now, T, are n = d sum d / T; with a number of samples for all pixels it is the part d / sum d of
 // that, as far as no pixel has more already. Pixels that have less than n / sqrt(2) are doubled, those that gain most per
 // sample first, until the prediction is reached or the samples are used up. One eighth of the step goes to pixels by a
-// low-discrepancy order instead, because the estimate may have missed something.
+// low-discrepancy order instead, because the estimate may have missed something. Where no pixel needs as much, those that gain
+// most are doubled all the same, as long as there are samples.
 Step next_step(const frame::FilmTile& film, std::span<const std::uint8_t> doublings,
                std::span<const Rect> tiles, const AdaptiveSettings& settings);
 

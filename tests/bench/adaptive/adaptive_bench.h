@@ -18,8 +18,8 @@ namespace tessera::tools::bench {
 struct AdaptivePlan {
     std::filesystem::path assets, references;
     std::vector<std::string> scenes;
-    std::vector<std::uint64_t> spp;  // means to compare at
-    std::vector<double> noise;       // to stop at
+    std::vector<std::uint64_t> spp;        // means to compare at
+    std::vector<double> noise;             // to stop at
     std::optional<filter::Choice> filter;  // whose pictures are compared; none: unfiltered ones
     Size size;
     std::uint32_t seeds = 0, jobs = 1;
@@ -35,7 +35,7 @@ struct AdaptiveRow {
     double gain = 0.0, trimmed_gain = 0.0;
     double light = 0.0;  // mean luminance over that of uniform samples
     std::vector<double>
-        true_noise;         // of the unfiltered picture of each seed, over the noise that was asked for; or, without, over the estimate
+        true_noise;  // of the unfiltered picture of each seed, over the noise that was asked for; or, without, over the estimate
     double deciding = 0.0;  // part of the time that decisions take
     double steps = 0.0;
 };

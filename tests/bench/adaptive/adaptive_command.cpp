@@ -59,7 +59,8 @@ Expected<AdaptivePlan> parse_options(const AdaptiveOptions& options) {
     plan.noise = std::move(*noise);
     if (!options.filter.empty()) {
         auto choice = filter::parse_choice(options.filter, filter::catalog());
-        if (!choice) return failure(ErrorCode::InvalidInput, std::string("--filter: ") + choice.error().what());
+        if (!choice)
+            return failure(ErrorCode::InvalidInput, std::string("--filter: ") + choice.error().what());
         plan.filter = std::move(*choice);
     }
     const auto size = parse_size(options.size);
@@ -135,20 +136,22 @@ int run(const AdaptiveOptions& options) {
 
 Command adaptive_command(cli::CommandLine& bench) {
     const auto options = std::make_shared<AdaptiveOptions>();
-    cli::CommandLine& line = bench.command("adaptive",
-                                           "Samples where they are needed, compared with as many uniform "
-                                           "ones: 'gain' is the relMSE of uniform over that of "
-                                           "adaptive samples, 'trimmed' the same without one pixel in a "
-                                           "thousand, 'light' the mean luminance over that of "
-                                           "uniform samples. 'true noise' is the root of the true relMSE of "
-                                           "the unfiltered picture over the noise that was asked for, or over its "
-                                           "estimate where a number of samples was: smallest, median and "
-                                           "largest of the seeds. 'deciding' is the part of the "
-                                           "time that the choice of pixels takes.");
+    cli::CommandLine& line =
+        bench.command("adaptive",
+                      "Samples where they are needed, compared with as many uniform "
+                      "ones: 'gain' is the relMSE of uniform over that of "
+                      "adaptive samples, 'trimmed' the same without one pixel in a "
+                      "thousand, 'light' the mean luminance over that of "
+                      "uniform samples. 'true noise' is the root of the true relMSE of "
+                      "the unfiltered picture over the noise that was asked for, or over its "
+                      "estimate where a number of samples was: smallest, median and "
+                      "largest of the seeds. 'deciding' is the part of the "
+                      "time that the choice of pixels takes.");
     line.option("--scenes", "a,b: built-in scenes or scene files (default: all)", options->scenes);
     line.option("--spp", "mean samples per pixel to compare at, 16 or more", options->spp);
     line.option("--noise", "noise to stop at", options->noise);
-    line.option("--filter", "compare the pictures of this filter (default: unfiltered ones)", options->filter);
+    line.option("--filter", "compare the pictures of this filter (default: unfiltered ones)",
+                options->filter);
     line.option("--size", "picture size", options->size);
     line.option("--seeds", "number of films", options->seeds);
     line.option("--reference-spp", "samples per pixel of each of two references", options->reference_spp);

@@ -108,6 +108,17 @@ TEST(AdaptiveStep, SpendsTheSamplesThatThereAreWhereTheyAreNeeded) {
     }
 }
 
+TEST(AdaptiveStep, MayDoubleAllPixels) {
+    SimulatedPicture picture(64, 64, 32, uneven);
+    const Step last = picture.finish({.noise = 0.05, .max_samples = 1 << 20, .uniform = true});
+    EXPECT_LE(last.noise, 0.05);
+    const auto [least, most] = std::ranges::minmax(picture.film().counts);
+    EXPECT_EQ(least, most);
+    SimulatedPicture black(32, 32, 16, [](auto, auto, CounterRandom&) { return 0.0f; });
+    EXPECT_FALSE(black.next({.max_samples = 1 << 12, .uniform = true}).rounds.empty());
+    EXPECT_TRUE(black.next({.noise = 0.1, .max_samples = 1 << 12, .uniform = true}).rounds.empty());
+}
+
 TEST(AdaptiveStep, RespectsTheMostSamplesAndClosedPixels) {
     SimulatedPicture picture(64, 64, 32, uneven);
     const AdaptiveSettings settings{.noise = 1e-6, .max_samples = 100};
