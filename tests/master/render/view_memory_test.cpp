@@ -50,7 +50,7 @@ TEST(ViewMemory, DecisionsOfAdaptiveViewsReadACopyOfTheirFilm) {
     session::ViewRequest adaptive = request("none");
     adaptive.stop = {.spp = 1024, .noise = 0.1};
     complete(adaptive);
-    EXPECT_EQ(double(bytes({adaptive})), 2.0 * double(film_bytes(adaptive.view)) + 60.0 * Pixels);
+    EXPECT_EQ(double(bytes({adaptive})), 2.0 * double(film_bytes(adaptive.view)) + 68.0 * Pixels);
     EXPECT_GT(film_bytes(adaptive.view), film_bytes(request("none").view)) << "it has the variance of blocks";
 }
 
