@@ -37,8 +37,11 @@ std::string describe(const session::ViewProgress& progress, const session::ViewR
     const bool by_time = request.stop.time_limit > Duration::zero() && request.stop.noise == 0.0;
     const double elapsed = std::max(seconds(progress.elapsed), 1e-3);
     const double expected = double(std::max<std::uint64_t>(progress.samples_expected, 1));
-    const double done = std::min(
-        1.0, by_time ? elapsed / seconds(request.stop.time_limit) : double(progress.samples) / expected);
+    const double by_samples = double(progress.samples) / expected;
+    const double done = std::min(1.0, !by_time ? by_samples
+                                      : request.stop.has_steps()
+                                          ? elapsed / seconds(request.stop.time_limit)
+                                          : std::max(elapsed / seconds(request.stop.time_limit), by_samples));
     const double spp =
         double(progress.samples) / double(std::max<std::size_t>(request.view.window.pixel_count(), 1));
     std::string text = formatted("%3.0f %%   ", 100.0 * done);

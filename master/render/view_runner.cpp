@@ -114,8 +114,7 @@ PlanSettings ViewRunner::plan_of(const ViewState& view) const {
 void ViewRunner::begin_pass(ViewState& view, EarlierFilm&& earlier) {
     passes_.begin(view.pass(), plan_of(view), requirements(view), view.run.deadline, std::move(earlier));
     Scheduler& scheduler = *passes_.dispatcher.find(view.pass().view.id);
-    view.run.samples_restored = scheduler.merged_samples();
-    view.run.samples_expected = view.run.samples_restored + scheduler.remaining_samples();
+    view.run.samples_expected = scheduler.merged_samples() + scheduler.remaining_samples();
     // What failed in a coarse pass would fail again, and cost more nodes.
     for (std::uint32_t tile = 0; tile < scheduler.tiles().size(); ++tile) {
         const Rect rect = in_full_size(view, view.pass(), scheduler.tiles()[tile]);

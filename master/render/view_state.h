@@ -52,7 +52,6 @@ struct Run {
     std::string message;  // why, unless complete
     std::optional<TimePoint> first_picture, ended;
     std::uint64_t samples = 0;                     // merged in the current pass, of all pixels
-    std::uint64_t samples_restored = 0;            // of these, before the master was restarted
     TimePoint seen_at{};                           // when `samples` was updated
     std::map<NodeId, session::NodeSummary> nodes;  // all that took part, including disconnected ones
     session::UnitCounts units;                     // of the current pass

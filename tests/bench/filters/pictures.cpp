@@ -76,8 +76,7 @@ class PicturesBench {
         request_.view = view_from(*plan, camera_);
         request_.view.channels = {frame::Channel::Radiance};
         request_.view.filter = filter::to_text(*choice);
-        request_.stop.adapts_size = true;
-        request_.stop.budget = *budget;
+        request_.stop = {.spp = session::MaxSamplesPerPixel, .budget = *budget, .adapts_size = true};
         request_.picture = options_.format == "jpg"   ? PictureEncoding::Jpeg
                            : options_.format == "exr" ? PictureEncoding::Exr
                                                       : PictureEncoding::Png;
