@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Usage: docs/make_pictures.sh [FOLDER]
 #
-# Renders all pictures of the documents again, into docs/ or the given folder (about 20 minutes on 2 cores).
+# Renders all pictures of the documents again, into docs/ or the given folder (about 30 minutes on 2 cores).
 #   TESSERA_SPP  samples per pixel of the charts (default: 128)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -41,6 +41,13 @@ for renderer in path whitted raster coverage; do
     [ $renderer != raster ] || backend=vulkan
     quietly "$tessera" render tests/scenes/still.glb --env tests/scenes/env-studio.exr --env-rotation 90 --renderer $renderer --backend $backend \
         --size 320x240 --spp "$spp" -o "$out/renderer-$renderer.png"
+done
+
+progress "pictures  noise"
+for amount in "before --spp 16" "after --noise 0.5"; do
+    # shellcheck disable=SC2086  # words
+    quietly "$tessera" render tests/scenes/interior-1.glb --size 384x216 ${amount#* } --noise-map "$out/noise-${amount%% *}.png" \
+        -o "$folder/interior.png"
 done
 
 progress "pictures  denoisers"
