@@ -27,6 +27,14 @@ std::vector<std::string> backend_names() {
     return names;
 }
 
+Expected<void> check_place(const std::string& option, const std::string& output) {
+    const std::filesystem::path folder = std::filesystem::path(output).parent_path();
+    if (!folder.empty() && !std::filesystem::is_directory(folder))
+        return wrong(option + ": there is no folder '" + folder.string() + "'; create it first");
+    if (std::filesystem::is_directory(output)) return wrong(option + ": '" + output + "' is a folder");
+    return {};
+}
+
 Expected<void> check_outputs(const RenderOptions& options) {
     if (options.outputs.empty() && !options.coverage && !options.detach)
         return wrong("no output file: add -o FILE.exr or -o FILE.png");
@@ -35,11 +43,7 @@ Expected<void> check_outputs(const RenderOptions& options) {
             return wrong("-o: '" + output +
                          "' has no supported picture format; end it with .exr, .png or .jpg");
         }
-        const std::filesystem::path folder = std::filesystem::path(output).parent_path();
-        if (!folder.empty() && !std::filesystem::is_directory(folder)) {
-            return wrong("-o: there is no folder '" + folder.string() + "'; create it first");
-        }
-        if (std::filesystem::is_directory(output)) return wrong("-o: '" + output + "' is a folder");
+        if (auto fine = check_place("-o", output); !fine) return fine;
     }
     return {};
 }
@@ -71,21 +75,13 @@ Expected<void> set_amount(const RenderOptions& options, session::ViewRequest& jo
         if (!(*options.noise > 0.0 && *options.noise <= 1.0)) return wrong("--noise: above 0, up to 1");
         job.stop.noise = *options.noise;
     }
-    if (options.adaptive) {
-        if (*options.adaptive != "on" && *options.adaptive != "off") return wrong("--adaptive: on or off");
-        const bool has_steps = options.noise || (options.time && !options.spp);
-        if (*options.adaptive == "on" && !has_steps)
-            return wrong(
-                "--adaptive on: with --spp alone all pixels have as many samples; add --noise or use --time");
-        job.stop.uniform = *options.adaptive == "off";
-    }
+    // Without a noise, --time is only an upper bound of --spp.
+    job.stop.uniform = options.adaptive == "off" || (options.spp && !options.noise);
     if (options.time) {
         const auto limit = parse_duration(*options.time);
         if (!limit) return wrong(std::string("--time: ") + limit.error().what());
         job.stop.time_limit = *limit;
         job.stop.spp = options.spp.value_or(options.noise ? MostSamples : MaxSpp);
-        if (options.spp && !options.noise)
-            job.stop.uniform = true;  // the time is only a bound of these samples
     } else {
         job.stop.spp = options.spp.value_or(options.noise ? MostSamples : job.stop.spp);
     }
@@ -128,7 +124,7 @@ Expected<void> check_noise_map(const RenderOptions& options) {
         return wrong("--noise-map and --frames exclude each other: look at the layer 'noise' of EXR files");
     if (options.detach)
         return wrong("--noise-map and --detach exclude each other: store an EXR, which has a layer 'noise'");
-    return {};
+    return check_place("--noise-map", *options.noise_map);
 }
 
 // Channels (AOVs) are requested only if an EXR is written.
@@ -271,19 +267,16 @@ void RenderOptions::add_to(cli::CommandLine& command) {
     command.option("--spp", "samples per pixel (64)", spp);
     command.option("--time",
                    "time budget, as 800ms or 10s, spent on the pixels that need it; with --denoise it "
-                   "includes denoising "
-                   "and encoding; with --spp or --noise an upper bound",
+                   "includes denoising and encoding; with --spp or --noise it is an upper bound",
                    time);
     command.option(
         "--noise",
         "samples where they are needed, until the unfiltered picture has this relative error (the root "
         "of relMSE, as of tessera compare), say 0.02; --spp (of any pixel) and --time are upper bounds",
         noise);
-    command.option(
-        "--adaptive",
-        "on (default): with --time or --noise each pixel has the samples that it needs; off: all have "
-        "as many",
-        adaptive);
+    command.choice("--adaptive",
+                   "on: with --time or --noise pixels get the samples that they need; off: all get as many",
+                   adaptive, {"on", "off"});
     command.option(
         "--noise-map",
         "also write a PNG of the noise of each pixel, from 0.01 (black) over 0.1 (red) to 1 (white)",

@@ -23,9 +23,9 @@ struct RenderOptions {
     std::optional<std::uint64_t> spp, nodes, threads;
     std::optional<std::string> time, backend, device, cache, master, keys, wait_nodes, frames;
     std::optional<double> fps, noise;
-    std::optional<std::string> adaptive, noise_map;
+    std::optional<std::string> noise_map;
     std::string user = "editor";
-    std::string policy = "mixed";
+    std::string policy = "mixed", adaptive = "on";
     FilterOption filter;
     std::string name;
     bool detach = false;

@@ -300,8 +300,8 @@ class Session(SessionNames):
         object layer i; other objects are invisible. `clamp`: most that a path adds to a sample after its second bounce, which
         makes the picture too dark (biased); None: no limit. `filter`: the denoiser; None: "psvgf" for "png" and "jpeg"
         without `film`, else none. `budget`: time in seconds for samples, filter and encoding
-        together; `spp` is 64 by default, and without limit with a budget. `exposure` of "png" and "jpeg" in EV, None: measured once, on the first
-        picture; `view_transform`: "neutral", "agx", "reinhard" or "linear"."""
+        together; `spp` is 64 by default, and without limit with a budget. `exposure` of "png" and "jpeg" in EV, None:
+        measured once, on the first picture; `view_transform`: "neutral", "agx", "reinhard" or "linear"."""
         if filter is None:
             filter = LIVE_FILTER if picture in ("png", "jpeg") and not film else ""
         view = plain_view(size, channels=channels, renderer=renderer, bounces=bounces, seed=seed, filter=filter,
@@ -320,9 +320,10 @@ class Session(SessionNames):
         """Renders one picture (arguments as in `open_view`) and returns its last frame and summary. Starts when `min_nodes` are
         ready, and gives up after `wait` seconds without nodes (outcome "no_nodes"). Calls `on_progress` with the progress.
 
-        `spp` is 64 by default; with `budget` there is no limit, and pixels get the samples that they need. With `noise` pixels get the samples that they need, until the picture's relative error (root of
-        relMSE, before the denoiser) is estimated to be that small: 0.02 is a clean picture. `spp` (of any pixel, 65536 by
-        default) and `budget` are upper bounds then. Not `adaptive`: all pixels get as many samples."""
+        `spp` is 64 by default; with `budget` alone there is no limit, and pixels get the samples that they need. With `noise`
+        they get them until the picture's relative error (root of relMSE, before the denoiser) is estimated to be that small: 0.02
+        is a clean picture. `spp` (of any pixel, 65536 by default) and `budget` are upper bounds then. Not `adaptive`: all pixels
+        get as many samples."""
         view = plain_view(size, channels=channels, renderer=renderer, bounces=bounces, seed=seed, filter=filter,
                           layers=layers, clamp=clamp)
         self.aim(view, at)
