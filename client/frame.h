@@ -7,7 +7,7 @@
 
 #include "mediator/base/hash.h"
 #include "mediator/base/ids.h"
-#include "mediator/frame/film_tile.h"
+#include "mediator/frame/film_state.h"
 #include "mediator/session/view_summary.h"
 
 namespace tessera::client {
@@ -21,7 +21,8 @@ struct Frame {
     std::uint32_t width = 0, height = 0, components = 0;
     session::PictureEncoding encoding = session::PictureEncoding::None;
     std::vector<std::byte> picture;  // Planes: float32, one component after another, each in raster order
-    std::optional<frame::FilmTile> film;  // of the whole window; pixels without samples have count 0
+    std::optional<frame::FilmTile> film;         // of the whole window; pixels without samples have count 0
+    std::optional<frame::FilmState> film_state;  // of the same film, if the request asks for it
     std::uint64_t min_samples = 0, max_samples = 0, spp = 0;  // per pixel
     bool complete = false;
     Hash256 film_hash;  // if complete, and if the view delivers every frame

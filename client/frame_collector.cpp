@@ -62,6 +62,34 @@ Expected<void> FrameCollector::add(wire::FrameTile&& tile) {
     return {};
 }
 
+Expected<void> FrameCollector::add(wire::FilmBlock&& block) {
+    if (!header_ || block.frame != header_->frame) return {};
+    frame::FilmTile& film = block.film;
+    const bool is_next =
+        !tile_ || (block.index == tile_->index && block.left + 1 == tile_->left && film.rect == tile_->rect);
+    if (!is_next) return unfit("blocks of film with a gap");
+    if (!tile_)
+        tile_.emplace(BlocksOfTile{.index = block.index, .rect = film.rect, .channels = film.channels});
+    tile_->left = block.left;
+    if (!state_) state_.emplace();
+    if (!block.is_wanted) {
+        if (film.channels != tile_->channels ||
+            tile_->film.insert(std::move(film)) != frame::TileFilm::Outcome::Merged)
+            return unfit("blocks of film that overlap");
+    } else if (film.block.first > 0) {  // else the tile has no samples
+        state_->wanted.push_back({film.rect, film.block, std::move(film.pixels)});
+    }
+    if (block.left > 0) return {};
+    const BlocksOfTile tile = *std::exchange(tile_, std::nullopt);
+    for (frame::FilmTile& whole : tile.film.blocks(frame::TileFilm::Parts::LeftOut))
+        state_->blocks.push_back(std::move(whole));
+    return add(wire::FrameTile{
+        .frame = block.frame,
+        .index = tile.index,
+        .count = block.count,
+        .film = tile.film.empty() ? frame::FilmTile(tile.rect, {}, tile.channels) : tile.film.merged()});
+}
+
 std::optional<Frame> FrameCollector::take() {
     if (!header_ || picture_.size() < header_->picture_bytes || tile_count_ < header_->film_tiles)
         return std::nullopt;
@@ -77,6 +105,7 @@ std::optional<Frame> FrameCollector::take() {
                  .encoding = header.encoding,
                  .picture = std::move(picture_),
                  .film = std::exchange(film_, std::nullopt),
+                 .film_state = std::exchange(state_, std::nullopt),
                  .min_samples = header.min_samples,
                  .max_samples = header.max_samples,
                  .spp = header.spp,

@@ -5,6 +5,7 @@
 
 #include "client/frame.h"
 #include "mediator/base/error.h"
+#include "mediator/frame/tile_film.h"
 #include "mediator/wire/messages.h"
 
 namespace tessera::client {
@@ -17,12 +18,23 @@ class FrameCollector {
     // InvalidInput: it contradicts the header or earlier parts. Parts of other frames are ignored.
     Expected<void> add(wire::PictureChunk&& chunk);
     Expected<void> add(wire::FrameTile&& tile);
+    Expected<void> add(wire::FilmBlock&& block);
     // The frame, once it is complete.
     std::optional<Frame> take();
 
   private:
+    // Whose blocks arrive one after another.
+    struct BlocksOfTile {
+        std::uint32_t index = 0, left = 0;
+        Rect rect;
+        frame::ChannelSet channels;
+        frame::TileFilm film{};
+    };
+
     std::optional<wire::FrameHeader> header_;
     std::vector<std::byte> picture_;
+    std::optional<frame::FilmState> state_;  // once a block has arrived
+    std::optional<BlocksOfTile> tile_;
     std::vector<frame::FilmTile> tiles_;  // until there are enough to allocate the whole film
     std::optional<frame::FilmTile> film_;
     std::vector<bool> seen_;  // tiles, by index

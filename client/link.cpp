@@ -146,6 +146,7 @@ void Link::receive(const net::Message& message, TimePoint now) {
     if (!decoded) return;
     if (const auto* request = std::get_if<wire::BlobRequest>(&*decoded)) serve(*request);
     if (auto* tile = std::get_if<wire::FrameTile>(&*decoded)) deliver(std::move(*tile));
+    if (auto* block = std::get_if<wire::FilmBlock>(&*decoded)) deliver(std::move(*block));
     if (auto* chunk = std::get_if<wire::PictureChunk>(&*decoded)) deliver(std::move(*chunk));
     if (auto* frame = std::get_if<wire::FrameHeader>(&*decoded)) deliver(std::move(*frame));
     if (auto* picture = std::get_if<wire::OutputPicture>(&*decoded)) deliver(std::move(*picture));

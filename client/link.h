@@ -26,8 +26,9 @@ struct Interrupted {};
 struct Rejoined {
     bool same_session = false;
 };
-using Incoming = std::variant<wire::ControlMessage, wire::FrameTile, wire::PictureChunk, wire::FrameHeader,
-                              wire::OutputPicture, wire::BlobChunk, wire::BlobAbsent, Interrupted, Rejoined>;
+using Incoming = std::variant<wire::ControlMessage, wire::FrameTile, wire::FilmBlock, wire::PictureChunk,
+                              wire::FrameHeader, wire::OutputPicture, wire::BlobChunk, wire::BlobAbsent,
+                              Interrupted, Rejoined>;
 
 // The session's thread: sends hello and heartbeats, reconnects after a timeout, serves blobs. Messages for the session
 // wait in an inbox, in order per link. Its states:

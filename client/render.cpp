@@ -8,9 +8,13 @@ constexpr std::uint64_t ViewNumber = std::uint64_t{1} << 32;  // beyond those th
 
 ViewResult render(Session& session, session::ViewRequest request,
                   const std::function<void(const session::ViewProgress&)>& on_progress, std::stop_token stop,
-                  Session::AfterEnd after) {
+                  Session::AfterEnd after, const EarlierFilm* earlier) {
     request.frames = session::Frames::Last;
-    session.request_view(ViewNumber, request);
+    if (earlier != nullptr) {
+        session.continue_view(ViewNumber, request, *earlier);
+    } else {
+        session.request_view(ViewNumber, request);
+    }
     return session.wait_for_end(ViewNumber, on_progress, stop, after);
 }
 

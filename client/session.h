@@ -47,6 +47,14 @@ struct Address {
     std::string user = "editor";  // name of the key pair in that folder
 };
 
+// Film of an earlier view, as ViewResult::frame.film_state has it, and where it is from.
+struct EarlierFilm {
+    frame::FilmState film;
+    Hash128 scene_hash;                 // as in its ViewSummary
+    std::uint32_t render_revision = 0;  // of the build that rendered it
+    std::string kind;  // of the nodes that rendered it, for a view that is to be reproducible
+};
+
 enum class WhenBusy { Queue, GiveUp };
 struct JoinRequest {
     std::string title;       // of the scene, if it is opened by this join
@@ -109,6 +117,9 @@ class Session {
     // ---- views; `number` is chosen by the caller ----
     // A request with the same number replaces the earlier one.
     void request_view(std::uint64_t number, const session::ViewRequest& request);
+    // As request_view(), of a view that is new: it goes on with this film. Throws Error{Refused} if that shows another
+    // scene or has other tiles, channels or samples than the view would have.
+    void continue_view(std::uint64_t number, const session::ViewRequest& request, const EarlierFilm& earlier);
     // Watches the existing view with this name; only the delivery settings of the request are used.
     void share_view(std::uint64_t number, const session::ViewRequest& request);
     // Of a view requested by this session; asynchronous.

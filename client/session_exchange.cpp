@@ -137,11 +137,6 @@ void Session::Implementation::take(wire::PictureChunk&& chunk) {
     collect_frame();
 }
 
-void Session::Implementation::take(wire::FrameTile&& tile) {
-    if (auto added = collector.add(std::move(tile)); !added) throw added.error();
-    collect_frame();
-}
-
 void Session::Implementation::take(wire::OutputPicture&& picture) {
     auto frame = output_collector.add(std::move(picture));
     if (!frame) throw frame.error();

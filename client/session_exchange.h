@@ -50,6 +50,7 @@ struct Session::Implementation {
     std::optional<wire::StatusReply> status;
     wire::StatusReply status_page(NodeId after);
     std::map<std::uint64_t, wire::RequestView> views;  // the latest request of each
+    std::map<std::uint64_t, scene::BlobPtr> films;     // that they continue: for a master that asks again
     std::optional<wire::FetchJob> fetched;             // the job being fetched
     std::set<std::uint64_t> stopping;                  // views that were asked to end
     std::map<std::uint64_t, session::ViewProgress> progress;
@@ -80,7 +81,13 @@ struct Session::Implementation {
     void take(wire::EditReply&& reply);
     void take(wire::FrameHeader&& header);
     void take(wire::PictureChunk&& chunk);
-    void take(wire::FrameTile&& tile);
+    void take(wire::FrameTile&& tile) { take_film(std::move(tile)); }
+    void take(wire::FilmBlock&& block) { take_film(std::move(block)); }
+    template <class Part>
+    void take_film(Part&& part) {
+        if (auto added = collector.add(std::forward<Part>(part)); !added) throw added.error();
+        collect_frame();
+    }
     void take(wire::OutputPicture&& picture);
     void take(wire::BlobChunk&& chunk) { (void)fetcher.receive(std::move(chunk), clock.now()); }
     void take(const wire::BlobAbsent& absent) { fetcher.absent(absent.hash); }
@@ -100,10 +107,14 @@ struct Session::Implementation {
         question.request = request;
         asked.emplace(request, question);
         link.send(std::move(question));
-        const TimePoint deadline = clock.now() + settings.lost_limit;
+        TimePoint deadline = clock.now() + settings.lost_limit;
+        std::uint64_t served = link.served_requests();
         while (!answers.contains(request)) {
             receive_next(std::min(clock.now() + Slice, deadline), {});
             throw_refusals();
+            // It does not answer while it fetches the blobs that the question needs.
+            if (served != link.served_requests()) deadline = clock.now() + settings.lost_limit;
+            served = link.served_requests();
             if (clock.now() >= deadline) {
                 asked.erase(request);
                 throw Error(ErrorCode::Unavailable, "the master does not answer: is it still running?");

@@ -1,5 +1,6 @@
 // The views of a session: requests, cameras, frames and results.
 #include "client/session_exchange.h"
+#include "mediator/wire/film_state_codec.h"
 
 namespace tessera::client {
 
@@ -20,6 +21,7 @@ void Session::Implementation::request(std::uint64_t number, wire::RequestView&& 
 
 void Session::Implementation::forget_view(std::uint64_t number) {
     views.erase(number);
+    films.erase(number);
     stopping.erase(number);
     progress.erase(number);
     ended_views.erase(number);
@@ -28,6 +30,16 @@ void Session::Implementation::forget_view(std::uint64_t number) {
 
 void Session::request_view(std::uint64_t number, const session::ViewRequest& request) {
     implementation_->request(number, {.wanted = request});
+}
+
+void Session::continue_view(std::uint64_t number, const session::ViewRequest& request,
+                            const EarlierFilm& earlier) {
+    Implementation& self = *implementation_;
+    const scene::BlobPtr film = self.blobs->insert(wire::encode(earlier.film));
+    self.films[number] = film;
+    self.request(number, {.wanted = request,
+                          .earlier = wire::EarlierFilm{scene::reference(*film), earlier.scene_hash,
+                                                       earlier.render_revision, earlier.kind}});
 }
 
 void Session::share_view(std::uint64_t number, const session::ViewRequest& request) {

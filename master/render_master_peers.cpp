@@ -135,9 +135,9 @@ void RenderMaster::manage_node(const SessionRecord& session, const wire::ManageN
 
 void RenderMaster::from_member(SessionRecord& session, wire::ControlMessage& message, TimePoint now) {
     if (const auto* view = std::get_if<wire::RequestView>(&message)) {
-        scene_.handle(session, *view, now);
+        service_.request_view(session, *view, now);
     } else if (const auto* ended = std::get_if<wire::EndView>(&message)) {
-        scene_.views().end(session.id, *ended, now);
+        service_.end_view(session, *ended, now);
     } else if (const auto* taken = std::get_if<wire::FrameTaken>(&message)) {
         scene_.views().taken(session.id, *taken);
     } else if (const auto* pick = std::get_if<wire::Pick>(&message)) {

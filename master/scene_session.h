@@ -21,6 +21,7 @@
 #include "master/scene/scene_distributor.h"
 #include "master/scene/scene_reads.h"
 #include "master/scene/session_journal.h"
+#include "mediator/frame/film_state.h"
 
 namespace tessera::master {
 
@@ -136,7 +137,9 @@ class SceneSession {
     void handle(SessionRecord& session, const wire::ReadMembers& request, TimePoint now);
     void handle(SessionRecord& session, const wire::ReadHistory& request);
     void handle(SessionRecord& session, const wire::ReadWriters& request);
-    void handle(SessionRecord& session, const wire::RequestView& request, TimePoint now);
+    // `film`: that a new view goes on with, as the request says.
+    void handle(SessionRecord& session, const wire::RequestView& request, TimePoint now,
+                std::optional<frame::FilmState>&& film = {});
     void handle(SessionRecord& session, const wire::SetViewFilter& request, TimePoint now);
 
     // Jobs of this scene, and finished jobs of any scene; for any client.
@@ -191,8 +194,11 @@ class SceneSession {
     std::string memory_problem(const session::ViewRequest& completed, std::optional<ViewId> replaced) const;
     std::string view_problem(const SessionRecord& session, std::uint64_t number,
                              const session::ViewRequest& wanted) const;
-    void open_view(SessionId session, const wire::RequestView& request, TimePoint now);
+    void open_view(SessionId session, const wire::RequestView& request,
+                   std::optional<frame::FilmState>&& film, TimePoint now);
     void view_opened(SessionId session, const wire::RequestView& request, const std::string& problem);
+    // "" or why film of a client cannot be continued.
+    std::string film_problem(const wire::EarlierFilm& film) const;
     std::string viewer_problem(const SessionRecord& session, std::uint64_t number,
                                const session::ViewRequest& wanted) const;
     std::string submission_problem(const SessionRecord& session, const session::ViewRequest& wanted) const;

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <exception>
 
+#include "master/render/adaptive/saved_step.h"
+#include "master/render/earlier_film.h"
 #include "master/scene_session.h"
 #include "mediator/wire/envelope.h"
 
@@ -209,14 +211,18 @@ void SceneSession::withdraw_unbuildable(const std::string& reason, TimePoint now
 
 // ---- views ----
 
-void SceneSession::handle(SessionRecord& session, const wire::RequestView& request, TimePoint now) {
+void SceneSession::handle(SessionRecord& session, const wire::RequestView& request, TimePoint now,
+                          std::optional<frame::FilmState>&& film) {
     if (request.share)
         return view_opened(session.id, request, views_.share(session.id, request.number, request.wanted));
     if (std::string problem = view_problem(session, request.number, request.wanted); !problem.empty())
         return view_opened(session.id, request, problem);
     // Earlier edits are visible in the view, and the render origin follows the camera while it is the only one.
     const SessionId id = session.id;
-    const auto open = [this, id, request](TimePoint at) { open_view(id, request, at); };
+    const auto earlier = std::make_shared<std::optional<frame::FilmState>>(std::move(film));
+    const auto open = [this, id, request, earlier](TimePoint at) {
+        open_view(id, request, std::move(*earlier), at);
+    };
     const auto follow_and_open = [this, id, request, open](TimePoint at) {
         if (views_.table().all().size() > 1) return open(at);
         requester_ = id;
@@ -247,12 +253,39 @@ std::string SceneSession::view_problem(const SessionRecord& session, std::uint64
     return memory_problem(completed, views_.watched(session.id, number));
 }
 
-void SceneSession::open_view(SessionId id, const wire::RequestView& request, TimePoint now) {
+std::string SceneSession::film_problem(const wire::EarlierFilm& film) const {
+    if (film.render_revision != frame::RenderRevision) {
+        return "its film is of render revision " + std::to_string(film.render_revision) +
+               ", and this master's nodes render " + std::to_string(frame::RenderRevision) +
+               ": continue it with the build that rendered it";
+    }
+    if (film.scene_hash != published_.state_hash()) {
+        return "its film shows another scene: name the file of that scene, and give the options that change "
+               "the "
+               "scene as they were then, such as --env, --material, --hide, --at";
+    }
+    return {};
+}
+
+void SceneSession::open_view(SessionId id, const wire::RequestView& request,
+                             std::optional<frame::FilmState>&& film, TimePoint now) {
     requester_.reset();
     const SessionRecord* session = services_.sessions.find(id);
     if (session == nullptr || !is_member(id)) return;  // it has left
     const ViewOwner owner{id, name(id), session->user, members_.at(id).key};
-    const std::string problem = views_.open(owner, request.number, request.wanted, published_.version(), now);
+    Views::Continued continued;
+    if (film) {
+        std::string problem = film_problem(*request.earlier);
+        session::ViewRequest completed = request.wanted;
+        complete(completed);
+        if (problem.empty()) problem = problem_of(*film, completed);
+        if (!problem.empty()) return view_opened(id, request, problem);
+        continued = {EarlierFilm{std::move(film->blocks), film->steps, saved_step(film->wanted)},
+                     request.wanted.reproducible ? request.earlier->kind : std::string()};
+    }
+    const std::string problem =
+        views_.open(owner, request.number, request.wanted, {published_.version(), published_.state_hash()},
+                    now, std::move(continued));
     if (problem.empty() && request.wanted.detached) return record_job(id, request, now);
     view_opened(id, request, problem);
 }

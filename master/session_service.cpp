@@ -117,7 +117,7 @@ void SessionService::refuse_edit(SessionRecord& session, std::uint64_t sequence,
                                                                 .problems = listed({std::move(problem)})}});
 }
 
-void SessionService::want(SessionRecord& session, const scene::BlobRef& blob) {
+void SessionService::want(SessionRecord& session, const scene::BlobRef& blob, const std::string& what) {
     if (session.fetcher.wants(blob.hash)) {  // counted already; an absent one is asked for again
         (void)session.fetcher.want(blob);
         return;
@@ -128,12 +128,12 @@ void SessionService::want(SessionRecord& session, const scene::BlobRef& blob) {
     }
     if (bytes + blob.byte_size > quota_) {
         throw Error(ErrorCode::Refused,
-                    "the meshes and textures of this key would take " +
+                    "the meshes, textures and films of this key would take " +
                         std::to_string((bytes + blob.byte_size) >> 20) + " MiB, more than its quota of " +
                         std::to_string(quota_ >> 20) +
                         ": remove some from the scene, or raise --blob-quota of the master");
     }
-    if (std::string problem = scene_.memory_problem(blob.byte_size, "a mesh or texture"); !problem.empty())
+    if (std::string problem = scene_.memory_problem(blob.byte_size, what); !problem.empty())
         throw Error(ErrorCode::Refused, problem);
     if (auto wanted = session.fetcher.want(blob); !wanted) throw wanted.error();
 }
@@ -209,7 +209,8 @@ void SessionService::advance(SessionRecord& session, TimePoint now) {
     }
     session.edits_wait = waits || session.edit_runs;
     if (session.opening && !session.edit_runs) advance_display(session, now);
-    if (session.edits.empty() && !session.opening) session.fetcher.release_completed();
+    if (session.continuing && !session.edit_runs) advance_view(session, now);
+    if (session.edits.empty() && !session.opening && !session.continuing) session.fetcher.release_completed();
     request_blobs(session, now);
 }
 
@@ -339,6 +340,11 @@ void SessionService::absent(SessionRecord& session, const wire::BlobAbsent& abse
                                                  "the client does not have blob " + to_hex(absent.hash) +
                                                      " that its display refers to"});
     }
+    if (session.edits.empty() && session.continuing) {
+        session.fetcher.forget_all();
+        return refuse_view(session, "the client does not have blob " + to_hex(absent.hash) +
+                                        " with the view's earlier film");
+    }
     if (session.edits.empty() || session.edit_runs) return;
     refuse_edit(session, session.edits.front().edit.sequence,
                 "the client does not have blob " + to_hex(absent.hash) + " that its edit refers to");
@@ -377,6 +383,7 @@ void SessionService::tick(TimePoint now) {
         outbox_.control(session.control, wire::SceneJoined{.version = {}, .queue_position = place});
     }
     for (auto& [id, session] : sessions_.all()) {
+        if (session.continuing && !session.edit_runs) advance_view(session, now);  // it may wait for an edit
         if (!session.fetcher.idle()) request_blobs(session, now);
     }
 }

@@ -19,6 +19,9 @@ class SessionService {
     void submit(SessionRecord& session, scene::Edit edit, std::uint64_t message_bytes, TimePoint now);
     void submit(SessionRecord& session, const wire::SubmitEditByBlob& edit, TimePoint now);
     void open_display(SessionRecord& session, const wire::OpenDisplay& request, TimePoint now);
+    // Opens it once the film that it continues is here.
+    void request_view(SessionRecord& session, const wire::RequestView& request, TimePoint now);
+    void end_view(SessionRecord& session, const wire::EndView& request, TimePoint now);
     void chunk(SessionRecord& session, wire::BlobChunk&& chunk, TimePoint now);
     void absent(SessionRecord& session, const wire::BlobAbsent& absent, TimePoint now);
     // The session is no longer a member of the scene.
@@ -32,9 +35,15 @@ class SessionService {
     void apply_first(SessionRecord& session, TimePoint now);
     void applied(RunningEdit& edit, TimePoint now);
     void advance_waiting(TimePoint now);
-    void want(SessionRecord& session, const scene::BlobRef& blob);  // throws Error over a limit
+    // Throws Error over a limit.
+    void want(SessionRecord& session, const scene::BlobRef& blob,
+              const std::string& what = "a mesh or texture");
     void request_blobs(SessionRecord& session, TimePoint now);
     void advance_display(SessionRecord& session, TimePoint now);
+    void advance_view(SessionRecord& session, TimePoint now);
+    void film_decoded(SessionId session, const scene::BlobRef& blob, Expected<frame::FilmState>&& film,
+                      TimePoint now);
+    void refuse_view(SessionRecord& session, std::string problem);
     MemoryUse memory_with_edits() const;  // those that wait included
     void refuse_edit(SessionRecord& session, std::uint64_t sequence, std::string problem);
     void admit(SessionRecord& session, const wire::JoinScene& request, TimePoint now);

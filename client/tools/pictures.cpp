@@ -8,6 +8,7 @@
 #include <set>
 #include <span>
 
+#include "client/tools/continued_film.h"
 #include "client/tools/formatted.h"
 #include "client/tools/view_attributes.h"
 #include "mediator/frame/resolve.h"
@@ -76,9 +77,10 @@ void mark_failed_tiles(frame::Image& image, const session::ViewRequest& request,
                         request.view.window.y);
 }
 
-std::string kinds_of(const client::ViewResult& result) {
+std::string kinds_of(const client::ViewResult& result, const std::vector<std::string>& earlier) {
     std::set<std::string> kinds;
     for (const session::NodeSummary& node : result.summary.nodes) kinds.insert(node.kind);
+    kinds.insert(earlier.begin(), earlier.end());
     std::string text;
     for (const std::string& kind : kinds) text += (text.empty() ? "" : "; ") + kind;
     return text;
@@ -99,7 +101,7 @@ std::map<std::string, std::string> provenance(const session::ViewRequest& reques
                        {"tessera.camera", origin.camera},
                        {"tessera.filmHash", origin.film_hash},
                        {"tessera.outcome", name(result.summary.outcome)},
-                       {"tessera.kinds", kinds_of(result)},
+                       {"tessera.kinds", kinds_of(result, origin.earlier_kinds)},
                        {"tessera.nodes", std::to_string(result.summary.nodes.size())},
                        {"tessera.seed", std::to_string(request.view.seed)},
                        {"tessera.maxBounces", std::to_string(request.view.max_bounces)},
@@ -204,12 +206,13 @@ void write_pictures(const std::vector<std::string>& paths, const session::ViewRe
         if (is_encoded(result)) {
             write_bytes(path, result.frame.picture);  // encoded by the master
         } else if (picture_format(path) == PictureFormat::Exr) {
-            picture::write_film_exr(path,
-                                    {.width = request.view.width,
-                                     .height = request.view.height,
-                                     .film = *result.film(),
-                                     .attributes = provenance(request, result, origin)},
-                                    filtered, statistics);
+            picture::FilmFile file{.width = request.view.width,
+                                   .height = request.view.height,
+                                   .film = *result.film(),
+                                   .attributes = provenance(request, result, origin)};
+            if (statistics == picture::Statistics::Include && result.frame.film_state)
+                add_continuation(file, request.view, result.summary, *result.frame.film_state);
+            picture::write_film_exr(path, file, filtered, statistics);
         } else {
             frame::Image image = filtered ? *filtered : unfiltered(*result.film());
             mark_failed_tiles(image, request, result.summary);

@@ -20,6 +20,7 @@ struct Origin {
     std::string scene;  // the file's name
     std::string camera;
     std::string film_hash;
+    std::vector<std::string> earlier_kinds{};  // of the nodes that rendered the film that it continues
 };
 
 // Writes what the result holds to every path: the master's picture where there is one, else the resolved

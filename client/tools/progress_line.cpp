@@ -37,7 +37,9 @@ std::string describe(const session::ViewProgress& progress, const session::ViewR
     const bool by_time = request.stop.time_limit > Duration::zero() && request.stop.noise == 0.0;
     const double elapsed = std::max(seconds(progress.elapsed), 1e-3);
     const double expected = double(std::max<std::uint64_t>(progress.samples_expected, 1));
-    const double by_samples = double(progress.samples) / expected;
+    // The rest of the samples, after those of a film that is continued.
+    const double before = double(progress.samples_before);
+    const double by_samples = (double(progress.samples) - before) / std::max(expected - before, 1.0);
     const double done = std::min(1.0, !by_time ? by_samples
                                       : request.stop.has_steps()
                                           ? elapsed / seconds(request.stop.time_limit)

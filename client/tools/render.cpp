@@ -9,6 +9,7 @@
 #include "client/channel_session.h"
 #include "client/render.h"
 #include "client/tools/cluster_options.h"
+#include "client/tools/continued_film.h"
 #include "client/tools/frame_names.h"
 #include "client/tools/host_info.h"
 #include "client/tools/interrupts.h"
@@ -50,6 +51,7 @@ class Render {
           log_(options.log) {}
 
     int run() {
+        if (const auto code = load_film()) return *code;
         if (const auto code = import(UsualFirstId)) return *code;
         if (stopped()) return interrupted("nothing was rendered");
         if (plan_.sequence && !scene_.playback)
@@ -72,6 +74,39 @@ class Render {
         return fail(ExitInterrupted, "interrupted; " + (frame_ ? "the earlier frames were written" : what));
     }
 
+    // The view is that of the film; it is needed before the scene is imported, which may depend on the picture's shape.
+    std::optional<int> load_film() {
+        if (!plan_.continued) return std::nullopt;
+        film_ = read_continued_film(*plan_.continued);
+        const std::string option = contradicting_option(plan_.given, plan_.view, film_->view);
+        if (!option.empty()) return report_error(name_, cli::ExitUsage, other_view(option));
+        const session::StopRule& stop = plan_.job.stop;
+        if (stop.spp <= film_->least_samples)
+            return report_error(name_, cli::ExitUsage,
+                                "--spp: film '" + film_->path + "' has " +
+                                    std::to_string(film_->least_samples) +
+                                    " samples per pixel already; ask for more");
+        if (film_->film.film.steps > 0 && !stop.has_steps())
+            return report_error(
+                name_, cli::ExitUsage,
+                "film '" + film_->path +
+                    "': its pixels have different numbers of samples (--noise or --time): continue "
+                    "it with --noise or --time, --spp is an upper bound");
+        if (plan_.job.reproducible && film_->kinds.find(';') != std::string::npos)
+            return report_error(name_, ExitBadInput,
+                                "--reproducible: film '" + film_->path +
+                                    "' was rendered by nodes of several kinds: " + film_->kinds);
+        plan_.view.size = {film_->view.width, film_->view.height};
+        plan_.view.import.aspect_ratio = double(film_->view.width) / double(film_->view.height);
+        plan_.job.tile = std::max(8u, film_->tile);
+        return std::nullopt;
+    }
+
+    std::string other_view(const std::string& option) const {
+        return option + ": film '" + film_->path +
+               "' was rendered with another; leave it out to continue that";
+    }
+
     std::optional<int> import(ObjectId first_id) {
         plan_.view.import.first_id = first_id;
         auto scene = import_scene(plan_.view);
@@ -80,6 +115,13 @@ class Render {
         auto camera = choose_camera(scene_.cameras, plan_.view.camera);
         if (!camera) return report_error(name_, cli::ExitUsage, camera.error().what());
         camera_ = std::move(*camera);
+        if (film_) {
+            const ViewOptions& given = plan_.given;
+            const bool is_given = given.camera || given.orthographic || given.lens_radius || given.focus ||
+                                  !given.aperture.empty();
+            if (is_given && view_from(plan_.view, camera_).camera != film_->view.camera)
+                return report_error(name_, cli::ExitUsage, other_view("--camera and its lens"));
+        }
         for (const scene::BlobPtr& blob : scene_.blobs) blobs_->insert(blob);
         return std::nullopt;
     }
@@ -183,12 +225,17 @@ class Render {
     void render(std::uint64_t seed) {
         plan_.job.view = view_from(plan_.view, camera_);
         plan_.job.view.seed = seed;
+        if (film_) {
+            plan_.job.view = film_->view;
+            plan_.job.view.filter = plan_.view.view.filter;
+        }
         ProgressLine line;
         result_ = client::render(
             *session_, plan_.job,
             [&](const session::ViewProgress& progress) { line.show(where_ + describe(progress, plan_.job)); },
             interrupts_.token(),
-            plan_.sequence ? client::Session::AfterEnd::Keep : client::Session::AfterEnd::Close);
+            plan_.sequence ? client::Session::AfterEnd::Keep : client::Session::AfterEnd::Close,
+            film_ ? &film_->film : nullptr);
     }
 
     // Complete pictures only: the fractions of a partial picture would be wrong.
@@ -232,7 +279,8 @@ class Render {
         const picture::CustomView* custom = plan_.custom_view ? &*plan_.custom_view : nullptr;
         picture::set_exr_threads(plan_.embedded.threads > 0 ? plan_.embedded.threads : core_count());
         write_pictures(outputs, plan_.job, result_,
-                       {std::filesystem::path(plan_.view.scene).filename().string(), camera_.name, hash},
+                       {std::filesystem::path(plan_.view.scene).filename().string(), camera_.name, hash,
+                        film_ ? listed_kinds(film_->kinds) : std::vector<std::string>()},
                        plan_.statistics, custom);
         std::vector<std::string> written = outputs;
         if (plan_.noise_map) {
@@ -264,6 +312,7 @@ class Render {
     std::optional<EmbeddedCluster> embedded_;
     std::unique_ptr<client::Session> session_;  // says goodbye before the embedded cluster stops
     client::ViewResult result_;
+    std::optional<ContinuedFilm> film_;
     std::optional<std::uint32_t> frame_;  // of a sequence, the one that is rendered
     std::string where_;                   // names it
 };

@@ -198,6 +198,18 @@ Expected<void> set_detached(const RenderOptions& options, RenderPlan& plan) {
     return {};
 }
 
+Expected<void> set_continued(const RenderOptions& options, RenderPlan& plan) {
+    if (!options.continued) return {};
+    if (options.frames) return wrong("--continue and --frames exclude each other: a film is one picture");
+    if (options.detach) return wrong("--continue and --detach exclude each other: wait for the picture");
+    if (!options.spp && !options.noise && !options.time)
+        return wrong("--continue: until when? Add --spp, --noise or --time");
+    plan.continued = options.continued;
+    plan.given = options.view;
+    plan.job.stop.adapts_size = false;
+    return {};
+}
+
 // Renders a larger picture with one pixel per sample; the usual size limits apply.
 Expected<void> set_coverage(const RenderOptions& options, RenderPlan& plan) {
     constexpr std::uint64_t MaxSamples = 4096, DefaultSamples = 16, MaxEdge = 65536;
@@ -281,6 +293,11 @@ void RenderOptions::add_to(cli::CommandLine& command) {
         "--noise-map",
         "also write a PNG of the noise of each pixel, from 0.01 (black) over 0.1 (red) to 1 (white)",
         noise_map);
+    command.option(
+        "--continue",
+        "go on with the film of this EXR, written with --save-statistics: of the same scene, with the "
+        "camera, size, seed and samples in it, until --spp, --noise or --time",
+        continued);
     command.option("--frames", "render frames A:B of the animation, each to its own -o out.%04d.exr", frames);
     command.option(
         "--fps",
@@ -289,7 +306,7 @@ void RenderOptions::add_to(cli::CommandLine& command) {
     command.flag("--skip-existing", "skip frames whose output files exist", skip_existing);
     filter.add_to(command);
     display.add_to(command);
-    command.flag("--save-statistics", "store all film channels in the EXR, for tessera filter",
+    command.flag("--save-statistics", "store all film channels in the EXR, for tessera filter and --continue",
                  save_statistics);
     command.choice("--policy", "how a frame is divided into work units", policy,
                    {"tiled", "cooperative", "mixed"});
@@ -310,6 +327,7 @@ void RenderOptions::add_to(cli::CommandLine& command) {
          "tessera render room.glb -o room.png --spp 8 --denoise",
          "tessera render still.glb --env studio.exr -o still.png --time 800ms --denoise",
          "tessera render room.glb -o room.png --noise 0.02 --time 5min",
+         "tessera render room.glb --continue film.exr -o film.exr --save-statistics --spp 256",
          "tessera render robot.glb --at 1.5 --animation walk -o robot.exr",
          "tessera render robot.glb --frames 0:47 --fps 24 -o robot.%04d.exr",
          "tessera render room.glb -o room.exr --nodes 2 --policy cooperative --json",
@@ -381,6 +399,8 @@ Expected<RenderPlan> parse_options(const RenderOptions& options) {
     plan.view.view.filter = plan.job.view.filter;
     plan.view.view.channels = plan.view.view.channels | channels_for(options);
     if (options.save_statistics) plan.statistics = picture::Statistics::Include;
+    plan.job.film_state = options.save_statistics;
+    if (auto fine = set_continued(options, plan); !fine) return tl::unexpected(fine.error());
     return plan;
 }
 

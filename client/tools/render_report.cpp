@@ -90,6 +90,13 @@ std::string noise_text(const session::StopRule& stop, const session::ViewSummary
                           : "the picture ended before it was as wanted");
 }
 
+std::string before_text(const session::ViewRequest& request, const session::ViewSummary& result) {
+    if (result.samples_before == 0) return {};
+    session::ViewSummary before;
+    before.samples = result.samples_before;
+    return formatted(", %.4g of them of the film that it continues", samples_per_pixel(request, before));
+}
+
 }  // namespace
 
 double samples_per_pixel(const session::ViewRequest& request, const session::ViewSummary& result) {
@@ -110,11 +117,12 @@ std::string as_json(const RenderReport& report) {
         {"first_picture_seconds", result.first_picture_seconds},
         {"rays", result.rays},
         {"mrays_per_second", per_second(result.rays, result.seconds_render) * 1e-6},
-        {"samples_per_second", per_second(result.samples, result.seconds_render)},
+        {"samples_per_second", per_second(result.samples - result.samples_before, result.seconds_render)},
         {"triangles", result.triangles},
         {"instances", result.instances},
         {"lights", result.lights},
         {"nonfinite_samples", result.nonfinite_samples},
+        {"samples_before", result.samples_before},
         {"noise", result.noise > 0.0 ? Json(result.noise) : Json()},
         {"clamp",
          report.request.view.clamp_indirect > 0.0f ? Json(report.request.view.clamp_indirect) : Json()},
@@ -158,11 +166,11 @@ std::string as_text(const RenderReport& report, const std::vector<std::string>& 
         for (const std::string& output : outputs) text += ", wrote " + output;
         return text;
     }
-    line("%dx%d pixels, %.4g samples per pixel", window.width, window.height,
-         samples_per_pixel(report.request, result));
+    line("%dx%d pixels, %.4g samples per pixel%s", window.width, window.height,
+         samples_per_pixel(report.request, result), before_text(report.request, result).c_str());
     line("%.2f s in all, %.2f s rendering: %.2f Mrays/s, %.3f Msamples/s", report.seconds_total,
          result.seconds_render, per_second(result.rays, result.seconds_render) * 1e-6,
-         per_second(result.samples, result.seconds_render) * 1e-6);
+         per_second(result.samples - result.samples_before, result.seconds_render) * 1e-6);
     if (const std::string noise = noise_text(report.request.stop, result); !noise.empty())
         line("%s", noise.c_str());
     if (const auto& picture = result.picture; picture.encoding != session::PictureEncoding::None) {

@@ -41,8 +41,10 @@ struct SessionRecord {
     };
     std::deque<HeldMessage> held;
     std::size_t held_bytes = 0;
-    std::optional<wire::OpenDisplay> opening;  // waits until its blobs have arrived
-    std::int64_t heartbeat_sent_at = 0;        // its latest, and when it came: what our next heartbeat echoes
+    std::optional<wire::OpenDisplay> opening;     // waits until its blobs have arrived
+    std::optional<wire::RequestView> continuing;  // likewise: a view with earlier film
+    bool film_is_being_decoded = false;           // of that view
+    std::int64_t heartbeat_sent_at = 0;  // its latest, and when it came: what our next heartbeat echoes
     TimePoint heartbeat_at{};
     net::PeerClock clock;
     std::uint32_t reported_position = 0;     // in the queue, as last sent to the client

@@ -190,12 +190,14 @@ void Delivery::report_progress(const ViewState& view, std::uint32_t nodes) {
 
 void Delivery::take(EncodedTile&& tile) {
     if (const auto pending = pending_.find(tile.frame); pending != pending_.end()) {
-        pending->second.tiles.push_back(std::make_shared<net::Bytes>(std::move(tile.bytes)));
+        pending->second.tiles.push_back(
+            {std::make_shared<net::Bytes>(std::move(tile.bytes)), tile.ends_tile});
         return;
     }
     for (Shipment& shipment : shipments_) {
         if (shipment.frame == tile.frame)
-            return shipment.tiles.push_back(std::make_shared<net::Bytes>(std::move(tile.bytes)));
+            return shipment.tiles.push_back(
+                {std::make_shared<net::Bytes>(std::move(tile.bytes)), tile.ends_tile});
     }
 }
 
@@ -252,15 +254,17 @@ void Delivery::ship(std::uint64_t frame, PendingFrame&& pending, const Reconstru
                 session->control,
                 encoded(wire::ViewDone{header.view, header.frame, end_of(*views_.find(pending.view), made)}));
         }
-        shipments_.push_back({.to = key,
-                              .view = pending.view,
-                              .frame = frame,
-                              .header = header,
-                              .picture = made.picture.bytes ? made.picture.bytes : no_picture,
-                              .tiles = pending.tiles,
-                              .tile_count = header.film_tiles,
-                              .tiles_requested = static_cast<std::uint32_t>(pending.tiles.size()),
-                              .film = pending.film});
+        shipments_.push_back(
+            {.to = key,
+             .view = pending.view,
+             .frame = frame,
+             .header = header,
+             .picture = made.picture.bytes ? made.picture.bytes : no_picture,
+             .tiles = pending.tiles,
+             .tile_count = header.film_tiles,
+             .tiles_requested = static_cast<std::uint32_t>(pending.tiles.size()),
+             .film = pending.film,
+             .form = pending.format.film_state ? FilmStore::TilesAs::Blocks : FilmStore::TilesAs::Merged});
     }
 }
 
@@ -340,22 +344,23 @@ void Delivery::send(Shipment& shipment, const SessionRecord& session, std::size_
         shipment.picture_sent += piece.size();
         budget -= std::min(budget, piece.size());
     }
-    for (; !shipment.tiles.empty(); shipment.tiles.pop_front(), ++shipment.tiles_sent) {
+    for (; !shipment.tiles.empty(); shipment.tiles.pop_front()) {
         if (!may_send()) return;
-        net::Bytes& tile = *shipment.tiles.front();
+        net::Bytes& tile = *shipment.tiles.front().bytes;
         budget -= std::min(budget, tile.size());
-        const bool is_last_receiver = shipment.tiles.front().use_count() == 1;
+        if (shipment.tiles.front().ends_tile) ++shipment.tiles_sent;
+        const bool is_last_receiver = shipment.tiles.front().bytes.use_count() == 1;
         outbox_.bulk(*session.bulk, is_last_receiver ? std::move(tile) : net::Bytes(tile),
                      &session::WireBytes::film);
     }
     const std::uint32_t until = std::min(shipment.tile_count, shipment.tiles_sent + TilesAhead);
     if (!shipment.film.value || until <= shipment.tiles_requested || !may_send()) return;
-    film_.deliver(shipment.film, shipment.frame, shipment.tiles_requested, until);
+    film_.deliver(shipment.film, shipment.frame, shipment.tiles_requested, until, shipment.form);
     shipment.tiles_requested = until;
 }
 
 Delivery::FrameFormat format_of(const session::ViewRequest& request) {
-    return {request.picture, request.film, request.frames, request.display_transform};
+    return {request.picture, request.film, request.film_state, request.frames, request.display_transform};
 }
 
 }  // namespace tessera::master

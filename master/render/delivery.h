@@ -26,7 +26,7 @@ class Delivery {
 
     struct FrameFormat {
         session::PictureEncoding picture = session::PictureEncoding::None;
-        bool film = false;
+        bool film = false, film_state = false;
         session::Frames frames = session::Frames::All;
         view::DisplayTransform transform;
         friend auto operator<=>(const FrameFormat&, const FrameFormat&) = default;
@@ -87,7 +87,11 @@ class Delivery {
         std::array<std::uint64_t, 3> progress{};
         TimePoint progress_at{};
     };
-    using EncodedTiles = std::deque<std::shared_ptr<net::Bytes>>;  // shared by the receivers of a frame
+    struct TileMessage {
+        std::shared_ptr<net::Bytes> bytes;  // shared by the receivers of a frame
+        bool ends_tile = true;
+    };
+    using EncodedTiles = std::deque<TileMessage>;
     struct PendingFrame {
         ViewId view;
         FrameFormat format;
@@ -109,6 +113,7 @@ class Delivery {
         EncodedTiles tiles;
         std::uint32_t tile_count = 0, tiles_requested = 0, tiles_sent = 0;
         ViewId film;
+        FilmStore::TilesAs form = FilmStore::TilesAs::Merged;
         bool is_done() const { return picture_sent == picture->size() && tiles_sent == tile_count; }
     };
     PendingFrame frame_of(const ViewState& view, const FrameFormat& format, std::uint64_t frame) const;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <functional>
 
+#include "master/render/adaptive/saved_step.h"
 #include "mediator/frame/resolve.h"
+#include "mediator/wire/film_state_codec.h"
 
 namespace tessera::master {
 
@@ -12,8 +14,8 @@ FilmStore::FilmStore(RenderOutputs& outputs)
 
 FilmStore::~FilmStore() = default;
 
-void FilmStore::open(ViewId view, std::uint64_t revision, FrameAssembler assembler) {
-    enqueue(Open{view, revision, std::make_shared<FrameAssembler>(std::move(assembler))}, 0);
+void FilmStore::open(ViewId view, std::uint64_t revision, FrameAssembler assembler, std::vector<Round> step) {
+    enqueue(Open{view, revision, std::make_shared<FrameAssembler>(std::move(assembler)), std::move(step)}, 0);
 }
 
 void FilmStore::close(ViewId view) {
@@ -34,8 +36,9 @@ void FilmStore::push(NodeId node, const wire::FilmHead& head, Admission&& admiss
     enqueue(Film{node, head, std::move(admission), std::move(film_message)}, bytes);
 }
 
-void FilmStore::deliver(ViewId view, std::uint64_t frame, std::uint32_t first, std::uint32_t last) {
-    enqueue(Deliver{view, frame, first, last}, 0);
+void FilmStore::deliver(ViewId view, std::uint64_t frame, std::uint32_t first, std::uint32_t last,
+                        TilesAs form) {
+    enqueue(Deliver{view, frame, first, last, form}, 0);
 }
 
 void FilmStore::copy(ViewId view) {
@@ -95,7 +98,10 @@ FilmStore::OpenFilm* FilmStore::film(ViewId view) {
 }
 
 void FilmStore::perform(Open& task) {
-    OpenFilm opened{.revision = task.revision, .assembler = std::move(task.assembler), .features = {}};
+    OpenFilm opened{.revision = task.revision,
+                    .assembler = std::move(task.assembler),
+                    .features = {},
+                    .step = std::move(task.step)};
     if (auto features = features_.extract(task.view)) opened.features = std::move(features.mapped());
     films_.insert_or_assign(task.view, std::move(opened));
 }
@@ -160,11 +166,35 @@ void FilmStore::perform(Deliver& task) {
     const OpenFilm* opened = film(task.view);
     if (opened == nullptr) return;
     for (std::uint32_t tile = task.first; tile < task.last; ++tile) {
+        if (task.form == TilesAs::Blocks) {
+            deliver_blocks(*opened, task.frame, tile);
+            continue;
+        }
         wire::FrameTile frame_tile{.frame = task.frame,
                                    .index = tile,
                                    .count = opened->assembler->tile_count(),
                                    .film = opened->assembler->merged_tile(tile)};
         outputs_.put(EncodedTile{task.frame, wire::encode(wire::BulkMessage(std::move(frame_tile)))});
+    }
+}
+
+void FilmStore::deliver_blocks(const OpenFilm& film, std::uint64_t frame, std::uint32_t tile) {
+    const FrameAssembler& assembler = *film.assembler;
+    std::vector<frame::FilmTile> blocks = assembler.blocks(tile);
+    const std::size_t count = blocks.size();
+    for (const frame::WantedSamples& wanted : wanted_samples(film.step, assembler, tile))
+        blocks.push_back(wire::without_samples(wanted, blocks.front().channels));
+    // No samples at all.
+    if (blocks.empty()) blocks.push_back(assembler.merged_tile(tile));
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        wire::FilmBlock block{.frame = frame,
+                              .index = tile,
+                              .count = assembler.tile_count(),
+                              .left = static_cast<std::uint32_t>(blocks.size() - 1 - i),
+                              .is_wanted = i >= count,
+                              .film = std::move(blocks[i])};
+        const bool ends_tile = block.left == 0;
+        outputs_.put(EncodedTile{frame, wire::encode(wire::BulkMessage(std::move(block))), ends_tile});
     }
 }
 
@@ -174,7 +204,7 @@ void FilmStore::perform(Copy& task) {
 }
 
 void FilmStore::perform(Decide& task) {
-    const OpenFilm* opened = film(task.view);
+    OpenFilm* opened = film(task.view);
     if (opened == nullptr || opened->revision != task.revision) return;
     const FrameAssembler& assembler = *opened->assembler;
     std::vector<std::uint8_t> doublings = assembler.doublings();
@@ -186,9 +216,11 @@ void FilmStore::perform(Decide& task) {
                             (rect.x - film.rect.x),
                         rect.width, std::uint8_t{255});
     }
-    outputs_.put(
-        StepDecision{task.view, task.revision, next_step(film, doublings, assembler.tiles(), task.settings)});
+    Step step = next_step(film, doublings, assembler.tiles(), task.settings);
+    opened->step = step.rounds;
+    outputs_.put(StepDecision{task.view, task.revision, std::move(step)});
 }
+
 void FilmStore::perform(Reconstruct& task) {
     const OpenFilm* opened = film(task.view.id);
     if (opened == nullptr) return;

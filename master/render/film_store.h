@@ -27,7 +27,8 @@ class FilmStore {
     explicit FilmStore(RenderOutputs& outputs);
     ~FilmStore();
 
-    void open(ViewId view, std::uint64_t revision, FrameAssembler assembler);  // replaces an older film of it
+    // Replaces an older film of the view. `step`: that an adaptive picture is in.
+    void open(ViewId view, std::uint64_t revision, FrameAssembler assembler, std::vector<Round> step = {});
     void close(ViewId view);
     // The film continues under another revision, with more channels.
     void add_channels(ViewId view, std::uint64_t revision, frame::ChannelSet channels);
@@ -35,8 +36,10 @@ class FilmStore {
     void retain_as_features(ViewId view, ViewId of_picture);
     // Film that was admitted (dispatcher.h).
     void push(NodeId node, const wire::FilmHead& head, Admission&& admission, net::Bytes film_message);
-    // Tiles [first, last) as messages for a client.
-    void deliver(ViewId view, std::uint64_t frame, std::uint32_t first, std::uint32_t last);
+    // Tiles [first, last) as messages for a client: merged, or as blocks and what is left of the step.
+    enum class TilesAs { Merged, Blocks };
+    void deliver(ViewId view, std::uint64_t frame, std::uint32_t first, std::uint32_t last,
+                 TilesAs form = TilesAs::Merged);
     void copy(ViewId view);  // results in FilmBlocks, or in nothing when there is no such film
 
     // The next step of an adaptive picture; results in a StepDecision, or in nothing when there is no such film. Tiles that
@@ -63,6 +66,7 @@ class FilmStore {
         ViewId view;
         std::uint64_t revision;
         std::shared_ptr<FrameAssembler> assembler;
+        std::vector<Round> step;
     };
     struct Close {
         ViewId view;
@@ -85,6 +89,7 @@ class FilmStore {
         ViewId view;
         std::uint64_t frame;
         std::uint32_t first, last;
+        TilesAs form;
     };
     struct Copy {
         ViewId view;
@@ -108,6 +113,7 @@ class FilmStore {
         std::uint64_t revision = 0;
         std::shared_ptr<FrameAssembler> assembler;
         std::shared_ptr<const frame::FilmTile> features;
+        std::vector<Round> step;  // that an adaptive picture is in, or the last one
     };
 
     void enqueue(Task task, std::size_t bytes);
@@ -119,6 +125,7 @@ class FilmStore {
     void perform(Film& task);
     void merge(Film& task, MergeReport& report);
     void perform(Deliver& task);
+    void deliver_blocks(const OpenFilm& film, std::uint64_t frame, std::uint32_t tile);
     void perform(Copy& task);
     void perform(Decide& task);
     void perform(Reconstruct& task);

@@ -6,17 +6,13 @@
 
 namespace tessera::master {
 
-namespace {
-
-std::string names(frame::ChannelSet channels) {
+std::string channel_names(frame::ChannelSet channels) {
     std::string text;
     for (const frame::ChannelInfo& entry : frame::channel_table()) {
         if (channels.contains(entry.channel)) text += (text.empty() ? "" : ", ") + std::string(entry.name);
     }
     return text;
 }
-
-}  // namespace
 
 FilterChange filter_change(const view::View& now, const std::string& filter) {
     using Effect = FilterChange::Effect;
@@ -39,7 +35,7 @@ FilterChange filter_change(const view::View& now, const std::string& filter) {
         change.text = "filter " + change.view.filter + " for the whole frame";
     } else {
         change.effect = Effect::Widened;
-        change.text = "filter " + change.view.filter + "; " + names(added) + " from now on";
+        change.text = "filter " + change.view.filter + "; " + channel_names(added) + " from now on";
     }
     return change;
 }

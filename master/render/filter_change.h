@@ -21,4 +21,7 @@ struct FilterChange {
 // `now`: as it is rendered; `filter`: a valid one.
 FilterChange filter_change(const view::View& now, const std::string& filter);
 
+// As users know them, separated by commas.
+std::string channel_names(frame::ChannelSet channels);
+
 }  // namespace tessera::master

@@ -37,6 +37,10 @@ class FrameAssembler {
     std::vector<frame::SampleBlock> roots(std::uint32_t tile) const { return films_[tile].roots(); }
     // All complete blocks, unmerged; not after add_channels().
     std::vector<frame::FilmTile> blocks() const;
+    // The same of one tile, parts included; after add_channels() with the channels that all samples have.
+    std::vector<frame::FilmTile> blocks(std::uint32_t tile) const {
+        return (earlier_.empty() ? films_[tile] : all_blocks(tile)).blocks(frame::TileFilm::Parts::Included);
+    }
     // See frame::TileFilm, in raster order of the whole film; 255 for pixels without samples.
     std::vector<std::uint8_t> doublings() const;
     // Of one tile; empty: it has no samples.

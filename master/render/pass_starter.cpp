@@ -9,14 +9,17 @@ namespace tessera::master {
 
 namespace {
 
-void continue_step(Scheduler& scheduler, const FrameAssembler& film, std::span<const wire::SavedPart> step) {
+// Returns what is left of the step.
+std::vector<Round> continue_step(Scheduler& scheduler, const FrameAssembler& film,
+                                 std::span<const wire::SavedPart> step) {
     const auto base = static_cast<std::uint8_t>(std::countr_zero(session::StopRule::AdaptiveBase));
     std::uint64_t further = 0;
     for (std::uint32_t tile = 0; tile < film.tile_count(); ++tile) {
         const std::vector<std::uint8_t> doublings = film.doublings(tile);
         const auto has_base = [&](std::uint8_t n) { return n >= base && n < 32; };
         if (doublings.empty() || !std::ranges::all_of(doublings, has_base)) {
-            scheduler.give_up({tile, {0, base}, "no node could render it before the master was restarted"});
+            scheduler.give_up(
+                {tile, {0, base}, "no node could render it in the film that this one continues"});
             continue;
         }
         scheduler.restored(tile, {0, base});
@@ -24,8 +27,9 @@ void continue_step(Scheduler& scheduler, const FrameAssembler& film, std::span<c
             further += (std::uint64_t{1} << n) - session::StopRule::AdaptiveBase;
     }
     scheduler.restored_more(further);
-    if (std::vector<Round> rounds = remaining_rounds(step, film); !rounds.empty())
-        scheduler.begin_step(std::move(rounds));
+    std::vector<Round> rounds = remaining_rounds(step, film);
+    if (!rounds.empty()) scheduler.begin_step(std::vector<Round>(rounds));
+    return rounds;
 }
 
 }  // namespace
@@ -44,8 +48,9 @@ void PassStarter::begin(Pass& pass, const PlanSettings& plan, const NodeRequirem
         if (result.outcome == FrameAssembler::Outcome::Merged && earlier.steps == 0)
             scheduler.restored(result.tile, samples);
     }
-    if (plan.is_adaptive && earlier.steps > 0) continue_step(scheduler, assembler, earlier.step);
-    film.open(pass.view.id, pass.view.revision, std::move(assembler));
+    std::vector<Round> step;
+    if (plan.is_adaptive && earlier.steps > 0) step = continue_step(scheduler, assembler, earlier.step);
+    film.open(pass.view.id, pass.view.revision, std::move(assembler), std::move(step));
 }
 
 void PassStarter::end(ViewId pass) {

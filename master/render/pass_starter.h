@@ -5,16 +5,8 @@
 #include "master/render/dispatcher.h"
 #include "master/render/film_store.h"
 #include "master/render/view_table.h"
-#include "mediator/wire/journal_records.h"
 
 namespace tessera::master {
-
-// What there was of a pass before the master was restarted.
-struct EarlierFilm {
-    std::vector<frame::FilmTile> blocks;
-    std::uint32_t steps = 0;            // of an adaptive pass: decided ones
-    std::vector<wire::SavedPart> step;  // the last one
-};
 
 // Begins and ends the passes of views: their units and their films together.
 struct PassStarter {

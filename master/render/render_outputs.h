@@ -35,10 +35,11 @@ struct MergeReport {
     std::string problem;            // not empty: its content is damaged or impossible
     std::string failure{};  // not empty: the master could not merge it, most likely for want of memory
 };
-// One merged tile of a frame, encoded for a client.
+// One tile of a frame, encoded for a client: merged, or one of its blocks.
 struct EncodedTile {
     std::uint64_t frame = 0;
     net::Bytes bytes;
+    bool ends_tile = true;
 };
 // The film of a view, unmerged: the blocks of all tiles.
 struct FilmBlocks {

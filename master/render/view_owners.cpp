@@ -8,7 +8,7 @@ namespace {
 // A user who fetches the picture gets a file, not the pixels or the film that its lost client would have written one from.
 Delivery::FrameFormat format_of_orphan(const session::ViewRequest& request) {
     Delivery::FrameFormat format = format_of(request);
-    format.film = false;
+    format.film = format.film_state = false;
     using enum session::PictureEncoding;
     if (format.picture == Planes || format.picture == None) format.picture = Exr;
     return format;
@@ -62,6 +62,7 @@ void Views::restore(std::vector<wire::SavedView>&& saved, Version version, Hash1
         view.asked = view.request.view;
         view.asked_revision = 1;
         view.version = version;
+        view.scene_hash = scene_hash;
         view.waits_since = now;
         view.orphaned = now;
         const session::ViewRequest& request = view.request;

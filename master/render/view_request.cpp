@@ -78,6 +78,8 @@ std::string problem_of(const session::ViewRequest& request) {
     if (!(stop.noise >= 0.0 && stop.noise <= 1e6)) return "the noise to reach is not between 0 and 1e6";
     if (stop.noise > 0.0 && request.frames == session::Frames::All)
         return "only views that deliver their last picture can stop at a noise";
+    if (request.film_state && (!request.film || request.frames == session::Frames::All))
+        return "only the film of a view that delivers its last picture can be asked for as blocks";
     if (request.name.size() > MaxName) return "the view's name is longer than 128 bytes";
     if (request.tile != 0 && request.tile < SmallestTile) return "tiles must be at least 8 pixels wide";
     const auto filter = filter::parse_choice(view.filter, filter::catalog());

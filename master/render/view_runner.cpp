@@ -1,6 +1,7 @@
 #include "master/render/view_runner.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "master/render/view_summary.h"
 
@@ -20,6 +21,7 @@ void ViewRunner::restart(ViewState& view, TimePoint now) {
     view.failed_tiles.clear();
     view.run = {.started = now,
                 .without_nodes_since = now,
+                .kind = view.earlier_kind,
                 .cost_key = cost_key(view.request),
                 .bytes_before = views_.bytes_at_start};
     wait_for_nodes(view, now);
@@ -69,10 +71,18 @@ void ViewRunner::wait_for_nodes(ViewState& view, TimePoint now) {
 
 void ViewRunner::begin_rendering(ViewState& view, TimePoint now) {
     Run& run = view.run;
-    run.scale = scale_that_fits(view, now);
+    run.scale = view.earlier ? 1 : scale_that_fits(view, now);
     run.phase = Phase::Rendering;
     run.rendering_since = now;
     view.passes = passes_of(view);
+    if (view.earlier) {
+        view.current = view.passes.size() - 1;
+        EarlierFilm earlier = *std::exchange(view.earlier, std::nullopt);
+        run.steps = earlier.steps;
+        begin_pass(view, std::move(earlier));
+        run.samples_before = passes_.dispatcher.find(view.pass().view.id)->merged_samples();
+        return advance(view, now);
+    }
     for (Pass& pass : view.passes) {  // pixels without features are only blurred
         if (pass.kind == Pass::Kind::Features) pass.deadline = now + (*run.deadline - now) / 2;
     }
@@ -112,7 +122,13 @@ PlanSettings ViewRunner::plan_of(const ViewState& view) const {
 }
 
 void ViewRunner::begin_pass(ViewState& view, EarlierFilm&& earlier) {
-    passes_.begin(view.pass(), plan_of(view), requirements(view), view.run.deadline, std::move(earlier));
+    PlanSettings plan = plan_of(view);
+    // Before the first decision all pixels need the same number of samples, a power of two.
+    if (plan.is_adaptive && earlier.steps == 0) {
+        for (const frame::FilmTile& block : earlier.blocks)
+            plan.spp = std::max(plan.spp, std::min(std::bit_ceil(block.block.end()), view.request.stop.spp));
+    }
+    passes_.begin(view.pass(), plan, requirements(view), view.run.deadline, std::move(earlier));
     Scheduler& scheduler = *passes_.dispatcher.find(view.pass().view.id);
     view.run.samples_expected = scheduler.merged_samples() + scheduler.remaining_samples();
     // What failed in a coarse pass would fail again, and cost more nodes.

@@ -13,9 +13,9 @@ void spend_time(const ViewState& view, TimePoint now, AdaptiveSettings& settings
     const Run& run = view.run;
     const double left = seconds(*run.deadline - now),
                  deciding = seconds(run.deciding) / std::max(run.steps, 1u);
-    // Views with a clock start over when the master does, so all samples are of this time.
-    const double rate =
-        double(run.samples) / std::max(seconds(now - run.rendering_since - run.deciding), 1e-3);
+    // Views with a clock start over when the master does, so all other samples are of this time.
+    const double rate = double(run.samples - run.samples_before) /
+                        std::max(seconds(now - run.rendering_since - run.deciding), 1e-3);
     const double samples = rate * left;
     if (run.step_is_uniform || samples < LeastSpp * double(view.request.view.window.pixel_count()) ||
         deciding > MostDeciding * left) {

@@ -8,6 +8,7 @@
 
 #include "master/render/view_request.h"
 #include "mediator/session/view_summary.h"
+#include "mediator/wire/journal_records.h"
 
 namespace tessera::master {
 
@@ -52,6 +53,7 @@ struct Run {
     std::string message;  // why, unless complete
     std::optional<TimePoint> first_picture, ended;
     std::uint64_t samples = 0;                     // merged in the current pass, of all pixels
+    std::uint64_t samples_before = 0;              // of these, in the film that it continues
     TimePoint seen_at{};                           // when `samples` was updated
     std::map<NodeId, session::NodeSummary> nodes;  // all that took part, including disconnected ones
     session::UnitCounts units;                     // of the current pass
@@ -67,6 +69,13 @@ struct Run {
 
     bool is_rendering() const { return phase == session::Phase::Rendering; }
     bool is_over() const { return phase == session::Phase::Filtering || phase == session::Phase::Delivering; }
+};
+
+// Film that a view goes on with: of a master that was restarted, or of a client.
+struct EarlierFilm {
+    std::vector<frame::FilmTile> blocks;
+    std::uint32_t steps = 0;            // of an adaptive pass: decided ones
+    std::vector<wire::SavedPart> step;  // the last one
 };
 
 // The client that opened a view. Owners with the same user and key are equal.
@@ -87,9 +96,12 @@ struct ViewState {
         group_priority;                // in lockstep with others (lockstep_group.h), without an owner
     std::uint64_t asked_revision = 0;  // of the request
     std::uint64_t camera_revision = 0;
-    std::uint64_t revision = 0;  // of the passes
-    std::uint64_t films = 0;     // begun, the current one included
-    Version version;             // of the scene in the film
+    std::uint64_t revision = 0;          // of the passes
+    std::uint64_t films = 0;             // begun, the current one included
+    Version version;                     // of the scene in the film
+    Hash128 scene_hash;                  // likewise
+    std::optional<EarlierFilm> earlier;  // until its first pass begins
+    std::string earlier_kind;            // of the nodes that rendered it, if the view is reproducible
     std::vector<Pass> passes;
     std::size_t current = 0;     // index of the current pass
     bool restart_wanted = true;  // the passes must restart

@@ -50,7 +50,7 @@ std::string Views::share(SessionId session, std::uint64_t number, const session:
 }
 
 std::string Views::open(const ViewOwner& owner, std::uint64_t number, session::ViewRequest request,
-                        Version version, TimePoint now) {
+                        const SceneInFilm& scene, TimePoint now, Continued&& continued) {
     if (std::string problem = problem_of(request); !problem.empty()) return problem;
     session::ViewRequest completed = request;
     complete(completed);
@@ -70,15 +70,19 @@ std::string Views::open(const ViewOwner& owner, std::uint64_t number, session::V
     view->orphaned.reset();
     const Delivery::FrameFormat format = format_of(request);
     // Ended views do not follow the scene, and who has one's end wants another.
-    const bool again =
-        view->has_ended() && (view->version != version || delivery_.has_taken_end(owner.session, number));
+    const bool again = view->has_ended() &&
+                       (view->version != scene.version || delivery_.has_taken_end(owner.session, number));
     delivery_.watch(owner.session, number, view->id, format);
     if (request.detached) {
         delivery_.keep(view->id, format);  // its end is for take_ended_jobs()
     } else {
         delivery_.release(view->id);  // its owner is back
     }
-    change(*view, std::move(request), version, again, now);
+    if (view->asked_revision == 0 && continued.film) {
+        view->earlier = std::move(continued.film);
+        view->earlier_kind = std::move(continued.kind);
+    }
+    change(*view, std::move(request), scene, again, now);
     return {};
 }
 
@@ -109,7 +113,7 @@ ViewState* Views::find_or_add(const ViewOwner& owner, std::uint64_t number, cons
     return &table_.add();
 }
 
-void Views::change(ViewState& view, session::ViewRequest&& request, Version version, bool again,
+void Views::change(ViewState& view, session::ViewRequest&& request, const SceneInFilm& scene, bool again,
                    TimePoint now) {
     const view::View asked = std::exchange(view.asked, request.view);
     complete(request);
@@ -123,6 +127,7 @@ void Views::change(ViewState& view, session::ViewRequest&& request, Version vers
     view.request.detached = request.detached;
     view.request.picture = request.picture;
     view.request.film = request.film;
+    view.request.film_state = request.film_state;
     view.request.display_transform = request.display_transform;
     view.request.min_nodes = request.min_nodes;
     view.request.wait_limit = request.wait_limit;
@@ -144,7 +149,8 @@ void Views::change(ViewState& view, session::ViewRequest&& request, Version vers
     const bool wait = view.awaiting_first_frame();
     view.restart_wanted = true;
     if (!wait) passes_.end_all(view);
-    view.version = version;
+    view.version = scene.version;
+    view.scene_hash = scene.hash;
 }
 
 void Views::end(SessionId session, const wire::EndView& request, TimePoint now) {
@@ -229,7 +235,7 @@ std::string Views::set_filter(const SessionRecord& asker, const std::string& nam
     if (view.shows_all()) {
         wanted.view = view.asked;
         wanted.view.filter = filter;
-        this->change(view, std::move(wanted), view.version, false, now);
+        this->change(view, std::move(wanted), {view.version, view.scene_hash}, false, now);
         if (change.effect == FilterChange::Effect::Restarted)
             return "filter " + change.view.filter +
                    "; the view restarts, since the filter needs other channels or path classes";
@@ -291,7 +297,9 @@ bool Views::scene_changed(const scene::ChangeList& changes, const scene::Scene& 
     for (auto& [id, view] : table_.all()) {
         if (view.has_ended()) continue;
         view.version = changes.to;
+        view.scene_hash = after.state_hash();
         if (restarts) {
+            view.earlier.reset();
             view.problem.clear();
             view.restart_wanted = true;
             passes_.end_all(view);

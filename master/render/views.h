@@ -31,8 +31,17 @@ class Views {
     // ---- clients ----
     // Again with the same number: changes camera, size or quality; changing only the filter keeps the film. Returns
     // "" or the problem.
+    struct SceneInFilm {
+        Version version;
+        Hash128 hash;
+    };
+    // Film of this scene and view that a new view goes on with.
+    struct Continued {
+        std::optional<EarlierFilm> film;
+        std::string kind;  // of the nodes that rendered it
+    };
     std::string open(const ViewOwner& owner, std::uint64_t number, session::ViewRequest request,
-                     Version version, TimePoint now);
+                     const SceneInFilm& scene, TimePoint now, Continued&& continued = {});
     // Watches the existing view of this name.
     std::string share(SessionId session, std::uint64_t number, const session::ViewRequest& wanted);
     // Stops watching the view; or ends it with its current samples.
@@ -115,7 +124,8 @@ class Views {
     std::string name_of_unnamed(const ViewOwner& owner, std::uint64_t number) const;
     ViewState& view_to_filter(const SessionRecord& asker, const std::string& name);
     // again: from the start, even if the request is the same.
-    void change(ViewState& view, session::ViewRequest&& request, Version version, bool again, TimePoint now);
+    void change(ViewState& view, session::ViewRequest&& request, const SceneInFilm& scene, bool again,
+                TimePoint now);
     void remove(ViewId view);
     void forget_orphans(TimePoint now);
     void deliver(TimePoint now);

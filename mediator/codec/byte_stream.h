@@ -46,6 +46,10 @@ class ByteReader {
         std::memcpy(values.data(), bytes_.data(), values.size_bytes());
         bytes_ = bytes_.subspan(values.size_bytes());
     }
+    void skip(std::size_t count) {
+        if (bytes_.size() < count) fail("it ends too early");
+        bytes_ = bytes_.subspan(count);
+    }
     std::span<const std::byte> rest() const { return bytes_; }
     [[noreturn]] void fail(const char* what) const {
         throw Error(ErrorCode::InvalidInput, std::string("malformed message: ") + what);

@@ -6,7 +6,9 @@
 #include <ImfInputFile.h>
 #include <ImfStringAttribute.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -18,6 +20,7 @@
 #include "mediator/frame/design_effect.h"
 #include "mediator/frame/resolve.h"
 #include "mediator/picture/exr_header.h"
+#include "mediator/picture/film_state_layers.h"
 #include "mediator/picture/noise_map.h"
 
 namespace tessera::picture {
@@ -151,6 +154,71 @@ FilmFile read(const std::string& path) {
     return result;
 }
 
+constexpr const char* TileSize = "tessera.tileSize";
+constexpr const char* Steps = "tessera.steps";
+
+void add_state(const frame::FilmTile& film, const frame::FilmState& state, std::vector<Layer>& layers,
+               std::map<std::string, std::string>& attributes) {
+    for (Layer& layer : state_layers(film, state)) layers.push_back(std::move(layer));
+    std::int32_t edge = 1;
+    for (const frame::FilmTile& block : state.blocks)
+        edge = std::max({edge, block.rect.width, block.rect.height});
+    attributes[TileSize] = std::to_string(edge);
+    if (state.steps > 0) attributes[Steps] = std::to_string(state.steps);
+}
+
+// Of a file that has one.
+std::optional<frame::FilmState> read_state(const std::string& path, const FilmFile& file) {
+    Imf::InputFile input(path.c_str(), 0);
+    const Imf::ChannelList& channels = input.header().channels();
+    const auto holds = [&](const std::string& name, Imf::PixelType type) {
+        const Imf::Channel* channel = channels.findChannel(name);
+        return channel != nullptr && channel->type == type && channel->xSampling == 1 &&
+               channel->ySampling == 1;
+    };
+    const auto number = [&](const char* name) -> std::uint32_t {
+        const auto found = file.attributes.find(name);
+        return found == file.attributes.end()
+                   ? 0
+                   : static_cast<std::uint32_t>(std::strtoul(found->second.c_str(), nullptr, 10));
+    };
+    const std::uint32_t edge = number(TileSize);
+    if (edge == 0 || edge > 256) return std::nullopt;
+    const frame::FilmTile& film = file.film;
+    constexpr std::size_t MaxBlocks = 64;  // of a pixel: one for each power of two, twice
+    std::vector<PixelBlocks> blocks;
+    std::vector<std::uint32_t> wanted;
+    Imf::FrameBuffer target;
+    while (blocks.size() < MaxBlocks) {
+        const std::string name = "blocks." + std::to_string(blocks.size());
+        if (!holds(name + ".first", Imf::UINT) || !holds(name + ".size", Imf::UINT)) break;
+        const bool has_planes = holds(name + ".count", Imf::UINT);
+        const std::vector<std::uint32_t> none(film.pixel_count());
+        PixelBlocks& slot = blocks.emplace_back(PixelBlocks{film, none, none});
+        take(target, name + ".first", Imf::UINT, slot.first.data(), film.rect);
+        take(target, name + ".size", Imf::UINT, slot.size.data(), film.rect);
+        if (!has_planes) continue;  // the film's own
+        take(target, name + ".count", Imf::UINT, slot.film.counts.data(), film.rect);
+        for (const frame::ChannelInfo& entry : frame::channel_table()) {
+            if (!film.channels.contains(entry.channel)) continue;
+            const std::uint32_t first = film.channels.first_plane(entry.channel);
+            for (std::uint32_t plane = 0; plane < entry.plane_count(); ++plane) {
+                const std::string of_plane = name + "." + std::string(entry.name) + "." + plane_name(plane);
+                if (!holds(of_plane, Imf::FLOAT)) return std::nullopt;
+                take(target, of_plane, Imf::FLOAT, slot.film.plane(first + plane).data(), film.rect);
+            }
+        }
+    }
+    if (blocks.empty()) return std::nullopt;
+    if (holds("wanted.samples", Imf::UINT)) {
+        wanted.resize(film.pixel_count());
+        take(target, "wanted.samples", Imf::UINT, wanted.data(), film.rect);
+    }
+    input.setFrameBuffer(target);
+    input.readPixels(film.rect.y, film.rect.bottom() - 1);
+    return state_of(blocks, wanted, number(Steps), edge);
+}
+
 // Checks what filters rely on (mediator/filter/inputs.h), since a file may contain anything.
 void check(const frame::FilmTile& film) {
     for (const frame::ChannelInfo& entry : frame::channel_table()) {
@@ -209,11 +277,12 @@ void write_film_exr(const std::string& path, const FilmFile& file,
         }
     }
     layers.push_back(counts_layer(film));
+    if (statistics == Statistics::Include && file.state) add_state(film, *file.state, layers, attributes);
     layers.insert(layers.end(), more.begin(), more.end());
     write_exr(path, file.width, file.height, film.rect, layers, attributes);
 }
 
-FilmFile read_film_exr(const std::string& path) {
+FilmFile read_film_exr(const std::string& path, State state) {
     const std::string named = "film '" + path + "': ";
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) {
@@ -225,6 +294,7 @@ FilmFile read_film_exr(const std::string& path) {
     try {
         FilmFile file = read(path);
         check(file.film);
+        if (state == State::Included) file.state = read_state(path, file);
         return file;
     } catch (const Error& error) {
         throw Error(error.code(), named + error.what());

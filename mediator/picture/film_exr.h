@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mediator/frame/film_state.h"
 #include "mediator/frame/film_tile.h"
 #include "mediator/frame/image.h"
 #include "mediator/picture/exr_writer.h"
@@ -17,6 +18,7 @@ struct FilmFile {
     std::uint32_t width = 0, height = 0;  // of the whole picture; the film covers its rect
     frame::FilmTile film;
     std::map<std::string, std::string> attributes;
+    std::optional<frame::FilmState> state{};  // of the film, so that it can be continued
 };
 
 enum class Statistics { Omit, Include };
@@ -24,13 +26,15 @@ enum class Statistics { Omit, Include };
 // One EXR: R G B (A) is `filtered`, if given (3 or 4 components), and layer `raw` the unfiltered radiance;
 // otherwise R G B is the radiance. Further layers: its variance of the mean, its noise (noise_map.h), every other
 // channel of the film resolved, object ids, sample counts; each channel's merge rule among the attributes.
-// Statistics::Include adds the film itself, plane by plane (layers statistics.CHANNEL), from which
-// read_film_exr() restores it bit by bit. The file is never incomplete; throws Error{Io}.
+// Statistics::Include adds the film itself, plane by plane (layers statistics.CHANNEL), and its state, if there is one
+// (film_state_layers.h), from which read_film_exr() restores both bit by bit. The file is never incomplete; throws Error{Io}.
 void write_film_exr(const std::string& path, const FilmFile& file,
                     const std::optional<frame::Image>& filtered = {},
                     Statistics statistics = Statistics::Omit, const std::vector<Layer>& more = {});
 
-// Throws Error{NotFound} if there is no such file, Error{InvalidInput} if it is damaged or has no statistics.
-FilmFile read_film_exr(const std::string& path);
+// Throws Error{NotFound} if there is no such file, Error{InvalidInput} if it is damaged or has no statistics. A file without
+// a state has none either when one is asked for.
+enum class State { LeftOut, Included };
+FilmFile read_film_exr(const std::string& path, State state = State::LeftOut);
 
 }  // namespace tessera::picture

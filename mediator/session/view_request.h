@@ -91,8 +91,9 @@ struct ViewRequest {
     Duration wait_limit{0};       // give up after this time without nodes; 0 = never
     Frames frames = Frames::All;
     PictureEncoding picture = PictureEncoding::None;
-    bool film = false;      // also deliver the film
-    bool detached = false;  // a job: continues when the client leaves, and the master stores its picture
+    bool film = false;        // also deliver the film
+    bool film_state = false;  // with `film`, of views that deliver their last frame: as blocks that can go on
+    bool detached = false;    // a job: continues when the client leaves, and the master stores its picture
     view::DisplayTransform display_transform;  // of a PNG or JPEG
     static constexpr auto describe(auto row) {
         using Self = ViewRequest;
@@ -102,7 +103,8 @@ struct ViewRequest {
             row(6, "tile", &Self::tile), row(7, "min_nodes", &Self::min_nodes),
             row(8, "wait_limit", &Self::wait_limit), row(9, "frames", &Self::frames),
             row(10, "picture", &Self::picture, UpTo{PictureEncoding::Exr}), row(11, "film", &Self::film),
-            row(12, "detached", &Self::detached), row(13, "display_transform", &Self::display_transform));
+            row(12, "detached", &Self::detached), row(13, "display_transform", &Self::display_transform),
+            row(14, "film_state", &Self::film_state));
     }
 };
 

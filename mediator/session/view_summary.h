@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mediator/base/clock.h"
+#include "mediator/base/hash.h"
 #include "mediator/base/ids.h"
 #include "mediator/base/rect.h"
 #include "mediator/session/view_request.h"
@@ -27,12 +28,13 @@ struct ViewProgress {
     std::uint32_t nodes = 0;
     Duration elapsed{};  // since rendering began
     double noise = 0.0;  // of an adaptive picture, at the last decision: sqrt(relMSE); 0: unknown
+    std::uint64_t samples_before = 0;  // of `samples`, those of the film that it continues
     static constexpr auto describe(auto row) {
         using Self = ViewProgress;
         return std::tuple(row(1, "phase", &Self::phase), row(2, "samples", &Self::samples),
                           row(3, "samples_expected", &Self::samples_expected), row(4, "rays", &Self::rays),
                           row(5, "nodes", &Self::nodes), row(6, "elapsed", &Self::elapsed),
-                          row(7, "noise", &Self::noise));
+                          row(7, "noise", &Self::noise), row(8, "samples_before", &Self::samples_before));
     }
 };
 
@@ -140,6 +142,9 @@ struct ViewSummary {
     std::uint64_t min_samples = 0, max_samples = 0;  // per pixel; with a picture
     std::vector<FailedTile> failed_tiles;            // the first ones
     double noise = 0.0;                              // as in ViewProgress
+    std::uint64_t samples_before = 0;                // likewise
+    std::uint32_t steps = 0;                         // of an adaptive picture: decided ones
+    Hash128 scene_hash;                              // of the scene in the film
     static constexpr auto describe(auto row) {
         using Self = ViewSummary;
         return std::tuple(
@@ -153,7 +158,8 @@ struct ViewSummary {
             row(15, "wire_bytes", &Self::wire_bytes), row(16, "picture", &Self::picture),
             row(17, "min_samples", &Self::min_samples), row(18, "max_samples", &Self::max_samples),
             row(19, "failed_tiles", &Self::failed_tiles, Limit{MaxFailedTiles}),
-            row(20, "noise", &Self::noise));
+            row(20, "noise", &Self::noise), row(21, "samples_before", &Self::samples_before),
+            row(22, "steps", &Self::steps), row(23, "scene_hash", &Self::scene_hash));
     }
 };
 

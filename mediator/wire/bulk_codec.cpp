@@ -253,6 +253,13 @@ const char* FilmPart::malformed() const {
     return malformed_block(film);
 }
 
+const char* FilmBlock::malformed() const {
+    if (index >= count) return "a tile's index is not below the tile count";
+    if (!is_wanted) return malformed_block(film);
+    const auto is_zero = [](std::uint32_t n) { return n == 0; };
+    return std::ranges::all_of(film.counts, is_zero) ? nullptr : "pixels that are to get samples have them";
+}
+
 // The film is put together in memory of this size: no larger than any view's.
 const char* FrameHeader::malformed() const {
     constexpr std::uint64_t MaxFilmPixels = std::uint64_t{1} << 28;

@@ -108,6 +108,22 @@ struct FrameTile {
         return index < count ? nullptr : "a tile's index is not below the tile count";
     }
 };
+// Master to client, in place of FrameTile where the client asks for what continues the film: a block of film of a tile; or,
+// with `is_wanted`, pixels that are to get the samples of the block, whose film has no samples and one channel. Of a client
+// to the master: the same, in the content of a blob (film_state_codec.h).
+struct FilmBlock {
+    std::uint64_t frame = 0;
+    std::uint32_t index = 0, count = 0;  // of the tile
+    std::uint32_t left = 0;              // messages of the tile that follow
+    bool is_wanted = false;
+    frame::FilmTile film;
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "frame", &FilmBlock::frame), row(2, "index", &FilmBlock::index),
+                          row(3, "count", &FilmBlock::count), row(4, "left", &FilmBlock::left),
+                          row(5, "is_wanted", &FilmBlock::is_wanted), row(6, "film", &FilmBlock::film));
+    }
+    const char* malformed() const;
+};
 // Master to client: a piece of the picture that the frame's header describes.
 struct PictureChunk {
     std::uint64_t frame = 0;

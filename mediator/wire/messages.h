@@ -60,7 +60,7 @@ using Bulk = MessageTable<
     MessageRow<4, "film_part", FilmPart, Nodes>, MessageRow<5, "frame_tile", FrameTile, Master>,
     MessageRow<6, "picture_chunk", PictureChunk, Master>,
     MessageRow<8, "output_picture", OutputPicture, Master>,
-    MessageRow<9, "frame_header", FrameHeader, Master>>;
+    MessageRow<9, "frame_header", FrameHeader, Master>, MessageRow<10, "film_block", FilmBlock, Master>>;
 
 static_assert(Control::is_valid({18, 19, 20, 24, 25, 26, 27, 30, 31, 47, 48}));
 static_assert(Bulk::is_valid({7}));

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <tuple>
 
+#include "mediator/scene/blob.h"
 #include "mediator/session/edits.h"
 #include "mediator/session/view_summary.h"
 
@@ -11,15 +13,30 @@
 // request number and is repeated in the reply; `number` is the client's number of the view.
 namespace tessera::wire {
 
+// Film of a client that a new view goes on with.
+struct EarlierFilm {
+    scene::BlobRef film;  // see film_state_codec.h
+    Hash128 scene_hash;   // of the scene in it
+    std::uint32_t render_revision = 0;
+    std::string kind;  // of the nodes that rendered it, if the view is to be reproducible
+    static constexpr auto describe(auto row) {
+        return std::tuple(row(1, "film", &EarlierFilm::film), row(2, "scene_hash", &EarlierFilm::scene_hash),
+                          row(3, "render_revision", &EarlierFilm::render_revision),
+                          row(4, "kind", &EarlierFilm::kind));
+    }
+};
+
 // Requests a view, or changes the one with that number; the latest request wins. Answered by RequestDone; with
 // `request` 0 only if it is refused.
 struct RequestView {
     std::uint64_t request = 0, number = 0;
     session::ViewRequest wanted;
     bool share = false;  // watch the view of that name; only the delivery settings of `wanted` are used
+    std::optional<EarlierFilm> earlier{};  // of a new view; else it is ignored
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "request", &RequestView::request), row(2, "number", &RequestView::number),
-                          row(3, "wanted", &RequestView::wanted), row(4, "share", &RequestView::share));
+                          row(3, "wanted", &RequestView::wanted), row(4, "share", &RequestView::share),
+                          row(5, "earlier", &RequestView::earlier));
     }
 };
 // Closes the view; with `deliver` ends it and sends its current state as the last frame.

@@ -6,6 +6,7 @@
 #include "mediator/frame/render_revision.h"
 #include "mediator/view/view.h"
 #include "mediator/wire/envelope.h"
+#include "mediator/wire/film_state_codec.h"
 #include "tests/wire/described_values.h"
 
 namespace tessera::test {
@@ -303,6 +304,26 @@ void RandomPeer::adjust_view(session::ViewRequest& wanted) {
     wanted = std::move(request);
 }
 
+// Film of the first tile of the view, as a blob; sometimes of another scene, or damaged.
+wire::EarlierFilm RandomPeer::earlier_film(const session::ViewRequest& wanted) {
+    constexpr std::int32_t Edge = 32;
+    const Rect& window = wanted.view.window;
+    frame::FilmTile block(intersection({window.x, window.y, Edge, Edge}, {window.x, window.y, 200, 200}),
+                          {0, static_cast<std::uint32_t>(random_.below(5))}, wanted.view.channels);
+    std::fill(block.counts.begin(), block.counts.end(), static_cast<std::uint32_t>(block.block.count()));
+    std::vector<std::byte> bytes =
+        wire::encode(frame::FilmState{.blocks = {std::move(block)},
+                                      .steps = static_cast<std::uint32_t>(random_.below(3) / 2),
+                                      .wanted = {}});
+    if (random_.chance(20)) bytes[random_.below(bytes.size())] ^= std::byte{0x10};
+    wire::EarlierFilm film{.film = {.hash = blake2b(bytes), .byte_size = bytes.size()},
+                           .scene_hash = edits_.state_hash(),
+                           .render_revision = frame::RenderRevision};
+    offered_.push_back({film.film.hash, std::move(bytes)});
+    if (offered_.size() > 1) offered_.pop_front();
+    return film;
+}
+
 template <class Message>
 void RandomPeer::adjust(Message& message) {
     wire::test::fill(message, random_.stream());
@@ -320,7 +341,11 @@ void RandomPeer::adjust(Message& message) {
     if constexpr (requires { message.text; }) message.text = random_.name("text");
     if constexpr (requires { message.reason.size(); }) message.reason = random_.name("reason");
     if constexpr (std::is_same_v<Message, wire::UnitReleased>) message = film_.release(settings_.may_forge);
-    if constexpr (std::is_same_v<Message, wire::RequestView>) adjust_view(message.wanted);
+    if constexpr (std::is_same_v<Message, wire::RequestView>) {
+        adjust_view(message.wanted);
+        if (random_.chance(80)) message.earlier.reset();
+        if (random_.chance(15)) message.earlier = earlier_film(message.wanted);
+    }
     if constexpr (std::is_same_v<Message, wire::JoinScene>) {
         // No exclusive scene that others would wait for.
         message.no_wait = message.no_wait || message.exclusive;

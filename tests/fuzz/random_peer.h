@@ -66,6 +66,7 @@ class RandomPeer {
     template <class Message>
     void adjust(Message& message);
     void adjust_view(session::ViewRequest& wanted);
+    wire::EarlierFilm earlier_film(const session::ViewRequest& wanted);
     std::string view_name() { return "view " + std::to_string(random_.below(8)); }
 
     std::unique_ptr<net::Channel> channel_;

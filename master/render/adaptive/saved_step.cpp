@@ -42,4 +42,32 @@ std::vector<Round> remaining_rounds(std::span<const wire::SavedPart> step, const
     return rounds_of(std::move(pixels), tiles);
 }
 
+std::vector<frame::WantedSamples> wanted_samples(std::span<const Round> step, const FrameAssembler& film,
+                                                 std::uint32_t tile) {
+    std::vector<frame::WantedSamples> wanted;
+    const Rect& rect = film.tiles()[tile];
+    const std::vector<std::uint8_t> doublings = film.doublings(tile);
+    for (const Round& round : step) {
+        if (doublings.empty() || !round.masks) continue;
+        const RoundMask& mask = (*round.masks)[tile];
+        if (mask.pixels == 0) continue;
+        const frame::PixelSet pixels = *frame::PixelSet::from_bits(mask.bits, rect.pixel_count());
+        std::vector<std::uint32_t> left;
+        for (std::size_t i = 0; i < pixels.count(doublings.size()); ++i) {
+            const std::uint32_t pixel = pixels.index(i);
+            if (doublings[pixel] == round.block.level) left.push_back(pixel);
+        }
+        if (!left.empty())
+            wanted.push_back({rect, round.block, frame::PixelSet(std::move(left), rect.pixel_count())});
+    }
+    return wanted;
+}
+
+std::vector<wire::SavedPart> saved_step(std::span<const frame::WantedSamples> wanted) {
+    std::vector<wire::SavedPart> parts;
+    for (const frame::WantedSamples& samples : wanted)
+        parts.push_back({samples.tile, samples.block, samples.pixels.bits(samples.tile.pixel_count())});
+    return parts;
+}
+
 }  // namespace tessera::master

@@ -6,6 +6,7 @@
 
 #include "master/render/frame_assembler.h"
 #include "master/render/schedule/plan.h"
+#include "mediator/frame/film_state.h"
 #include "mediator/wire/journal_records.h"
 
 namespace tessera::master {
@@ -16,5 +17,11 @@ std::vector<wire::SavedPart> saved_step(std::span<const Round> rounds, std::span
 
 // What film lacks of it: by number of samples, ascending. Parts that do not fit the film are left out.
 std::vector<Round> remaining_rounds(std::span<const wire::SavedPart> step, const FrameAssembler& film);
+
+// The same of the step's rounds, of one tile.
+std::vector<frame::WantedSamples> wanted_samples(std::span<const Round> step, const FrameAssembler& film,
+                                                 std::uint32_t tile);
+// As a client has it.
+std::vector<wire::SavedPart> saved_step(std::span<const frame::WantedSamples> wanted);
 
 }  // namespace tessera::master

@@ -1,7 +1,9 @@
+#include "mediator/frame/tile_film.h"
 #include "mediator/scene/scene.h"
 #include "mediator/scene/validate.h"
 #include "mediator/wire/display_codec.h"
 #include "mediator/wire/envelope.h"
+#include "mediator/wire/film_state_codec.h"
 #include "tests/fuzz/decoders/decoder.h"
 #include "tests/fuzz/decoders/round_trip.h"
 #include "tests/wire/sample_messages.h"
@@ -105,6 +107,29 @@ Seeds display_blob_seeds() {
     return {wire::encode(display)};
 }
 
+void film_state(Bytes bytes) {
+    const auto film = wire::decode_film_state(bytes);
+    if (!film) return require_reason(film.error());
+    require_round_trip(*film, wire::decode_film_state);
+    const Rect tile = film->blocks.empty() ? Rect{} : film->blocks.front().rect;
+    frame::TileFilm merged;
+    for (const frame::FilmTile& block : film->blocks) {
+        if (block.rect == tile && block.channels == film->blocks.front().channels) (void)merged.insert(block);
+    }
+    if (!merged.empty()) (void)merged.merged();
+}
+
+Seeds film_state_seeds() {
+    const Rect tile{8, 0, 8, 4};
+    frame::FilmTile block(tile, {0, 4}, {frame::Channel::Radiance});
+    std::fill(block.counts.begin(), block.counts.end(), 16u);
+    frame::FilmTile more(tile, {16, 4}, block.channels, frame::PixelSet({1, 5}, 32));
+    std::fill(more.counts.begin(), more.counts.end(), 16u);
+    return {wire::encode(frame::FilmState{
+                .blocks = {block, more}, .steps = 1, .wanted = {{tile, {16, 4}, frame::PixelSet({0}, 32)}}}),
+            wire::encode(frame::FilmState{.blocks = {block}, .wanted = {}})};
+}
+
 }  // namespace
 
 std::vector<Decoder> message_decoders() {
@@ -112,6 +137,7 @@ std::vector<Decoder> message_decoders() {
             {"bulk", bulk, bulk_seeds},
             {"change-list", change_list, change_list_seeds},
             {"edit", edit, edit_seeds},
+            {"film-state", film_state, film_state_seeds},
             {"display-blob", display_blob, display_blob_seeds}};
 }
 

@@ -34,8 +34,11 @@ void exr(Bytes bytes) {
                 "a picture has another size than its window");
     });
     accepts([&] {
-        const picture::FilmFile file = picture::read_film_exr(path);
+        const picture::FilmFile file = picture::read_film_exr(path, picture::State::Included);
         require(file.film.counts.size() == file.film.pixel_count(), "film lacks pixels");
+        if (!file.state) return;
+        for (const frame::FilmTile& block : file.state->blocks)
+            require(intersection(block.rect, file.film.rect) == block.rect, "a block is outside the film");
     });
 }
 
@@ -51,7 +54,12 @@ Seeds exr_seeds() {
     const std::string path = file_of("new.exr", {}).string();
     picture::write_film_exr(path, {3, 2, film, {}}, {}, picture::Statistics::Include);
     const std::vector<std::byte> with_statistics = content_of(path);
-    return {with_statistics,
+    frame::FilmTile later = film;
+    later.block = {2, 1};
+    picture::write_film_exr(
+        path, {3, 2, film, {}, frame::FilmState{.blocks = {film, later}, .steps = 0, .wanted = {}}}, {},
+        picture::Statistics::Include);
+    return {with_statistics, content_of(path),
             picture::encode_picture(gradient(3), picture::FileFormat::Exr, view::DisplayTransform{}),
             picture::encode_picture(gradient(4), picture::FileFormat::Exr, view::DisplayTransform{})};
 }

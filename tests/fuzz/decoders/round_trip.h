@@ -2,6 +2,7 @@
 
 #include "mediator/wire/display_codec.h"
 #include "mediator/wire/envelope.h"
+#include "mediator/wire/film_state_codec.h"
 #include "mediator/wire/journal_codec.h"
 #include "tests/fuzz/decoders/decoder.h"
 
