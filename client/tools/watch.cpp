@@ -36,6 +36,7 @@ struct WatchOptions {
     DisplayTransformOptions display;
     std::optional<std::string> size, output, time;
     std::uint64_t spp = 256;
+    std::string adaptive = "on";
     std::uint64_t frames = 0;
     bool once = false, no_wait = false;
 };
@@ -130,7 +131,7 @@ class Watch {
 
     void open_view() {
         session::ViewRequest request{.name = options_.view,
-                                     .stop = {.spp = options_.spp},
+                                     .stop = {.spp = options_.spp, .uniform = options_.adaptive == "off"},
                                      .picture = session::PictureEncoding::Planes};
         const bool is_shared = !options_.view.empty();
         if (!is_shared) {
@@ -237,7 +238,9 @@ Command watch_command(cli::CommandLine& program) {
     line.option("--camera", "camera of the scene, by name or by number from 0", options->camera);
     line.option("--size", "picture size in pixels (default: 1280x720, or the size of the terminal)",
                 options->size);
-    line.option("--spp", "samples per pixel of the complete frame", options->spp);
+    line.option("--spp", "samples per pixel of the complete frame, in the mean", options->spp);
+    line.choice("--adaptive", "on: pixels get the samples that they need; off: all get as many",
+                options->adaptive, {"on", "off"});
     options->filter.add_to(line);
     options->display.add_to(line);
     line.option("-o,--output", "write every frame to this picture, .png, .jpg or .exr", options->output);

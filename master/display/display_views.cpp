@@ -53,6 +53,8 @@ std::vector<GroupView> DisplayService::views() {
                 if (layer_count(display) > 1 || (display.stereo_difference && eyes.size() == 2))
                     view.view.channels.insert(frame::Channel::Depth);
                 complete(view.view);
+                if (has_noise(view.view) && display.spp > session::StopRule::AdaptiveBase)
+                    view.view.channels.insert(frame::Channel::BlockVariance);
                 wanted.push_back(std::move(view));
                 ++planned.layers;
             }

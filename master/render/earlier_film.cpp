@@ -21,10 +21,10 @@ std::string channel_problem(const frame::ChannelSet& film, const frame::ChannelS
 std::string problem_of(const frame::FilmState& film, const session::ViewRequest& completed) {
     const Rect& window = completed.view.window;
     const auto edge = static_cast<std::int32_t>(choose_tile_edge(completed.view, completed.tile));
-    if (film.steps > 0 && !completed.stop.has_steps())
+    if (film.steps > 0 && !completed.has_steps())
         return "pixels of its film have different numbers of samples: let it go on to a noise or for a time, "
                "with steps";
-    const std::uint64_t most = completed.stop.has_steps() ? session::MaxSamplesPerPixel : completed.stop.spp;
+    const std::uint64_t most = completed.has_steps() ? session::MaxSamplesPerPixel : completed.stop.spp;
     for (const frame::FilmTile& block : film.blocks) {
         if (std::string problem = channel_problem(block.channels, completed.view.channels); !problem.empty())
             return problem;

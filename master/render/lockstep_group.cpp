@@ -71,6 +71,8 @@ std::vector<ViewId> LockstepGroup::restart(const std::vector<GroupView>& wanted,
     group.restart_wanted = group.resample_wanted = false;
     group.first_is_consumed = group.complete = false;
     group.samples = 0;
+    group.decided.clear();
+    group.is_deciding = group.has_last_samples = false;
     if (wanted.size() != group.views.size()) {
         removed = std::exchange(group.views, {});
         for (const GroupView& view : wanted) {
@@ -91,6 +93,9 @@ std::vector<ViewId> LockstepGroup::restart(const std::vector<GroupView>& wanted,
         view.group_priority = wanted[i].priority;
         view.request.view = wanted[i].view;
         view.request.stop.spp = group.spp * wanted[i].priority;
+        const bool can_step = view.request.view.channels.contains(frame::Channel::BlockVariance) &&
+                              group.spp > session::StopRule::AdaptiveBase;
+        view.request.stop.uniform = !can_step;
         view.version = group.version;
         view.restart_wanted = false;
         view.problem.clear();
@@ -108,7 +113,11 @@ std::vector<ViewId> LockstepGroup::restart(const std::vector<GroupView>& wanted,
 
 void LockstepGroup::begin_pass(ViewState& view) {
     Pass& pass = view.pass();
-    const PlanSettings plan{.window = pass.view.window, .tile = tile_edge(pass.view), .spp = pass.spp};
+    PlanSettings plan{.window = pass.view.window, .tile = tile_edge(pass.view), .spp = pass.spp};
+    if (view.is_last_pass() && view.request.has_steps()) {
+        plan.is_adaptive = true;
+        plan.spp = session::StopRule::AdaptiveBase * view.priority();
+    }
     passes_.begin(pass, plan, {view.version}, std::nullopt);
     if (!view.is_last_pass()) return;
     passes_.dispatcher.find(pass.view.id)
@@ -144,10 +153,10 @@ std::optional<GroupStage> LockstepGroup::advance(Consumer consumer) {
     } else {
         group.resample_wanted = false;
     }
-    if (group.complete || !is_stage_done()) return std::nullopt;
+    if (group.complete || group.is_deciding || !is_stage_done()) return std::nullopt;
     const bool is_picture = views_.find(group.views.front())->is_last_pass();
     if (is_picture) group.samples = std::max<std::uint64_t>(group.samples, 1);
-    const bool is_last = is_picture && group.samples >= group.spp;
+    const bool is_last = is_picture && is_last_stage();
     if (consumer == Consumer::Free) {
         if (mark_shown(is_last)) {
             group.is_first_stage = !std::exchange(group.first_is_consumed, true);
@@ -181,12 +190,72 @@ bool LockstepGroup::mark_shown(bool is_last) {
     return true;
 }
 
-void LockstepGroup::advance_views() {
-    const bool is_picture = views_.find(open_->views.front())->is_last_pass();
-    if (is_picture) open_->samples *= 2;
+bool LockstepGroup::is_last_stage() const {
+    const bool any_steps = std::any_of(open_->views.begin(), open_->views.end(),
+                                       [this](ViewId id) { return views_.find(id)->request.has_steps(); });
+    return any_steps ? open_->has_last_samples : open_->samples >= open_->spp;
+}
+
+// Those that have the samples of the first decision.
+std::vector<ViewState*> LockstepGroup::views_with_steps() {
+    std::vector<ViewState*> views;
+    if (open_->samples < session::StopRule::AdaptiveBase) return views;
     for (const ViewId id : open_->views) {
         ViewState& view = *views_.find(id);
-        if (is_picture) {
+        if (view.is_last_pass() && view.request.has_steps()) views.push_back(&view);
+    }
+    return views;
+}
+
+void LockstepGroup::request_step(ViewState& view) {
+    constexpr std::uint64_t MostOfAPixel = 64;  // of the mean
+    const std::uint64_t mean = open_->spp * view.priority();
+    const ViewId pass = view.pass().view.id;
+    AdaptiveSettings settings{.step = view.run.steps, .uniform = view.run.step_is_uniform};
+    settings.max_samples =
+        settings.uniform ? mean : std::min(session::MaxSamplesPerPixel, MostOfAPixel * mean);
+    if (!settings.uniform) settings.samples = mean * view.pass().view.window.pixel_count();
+    std::vector<std::uint32_t> closed;
+    for (const TileFailure& failure : passes_.dispatcher.find(pass)->failed_tiles())
+        closed.push_back(failure.tile);
+    passes_.film.decide(pass, view.pass().view.revision, settings, std::move(closed));
+}
+
+void LockstepGroup::take(ViewState& view, StepDecision&& decision) {
+    if (!open_ || !open_->is_deciding || view.passes.empty() || view.pass().view.id != decision.view ||
+        view.pass().view.revision != decision.revision)
+        return;
+    const bool is_dark = decision.step.rounds.empty() && decision.step.noise == 0.0;
+    if (is_dark && !std::exchange(view.run.step_is_uniform, true)) return request_step(view);
+    view.run.step_is_uniform = false;
+    view.run.noise = decision.step.noise;
+    ++view.run.steps;
+    open_->decided[view.id] = std::move(decision.step.rounds);
+    const std::vector<ViewState*> deciding = views_with_steps();
+    if (open_->decided.size() < deciding.size()) return;
+    open_->is_deciding = false;
+    open_->has_last_samples = open_->samples >= open_->spp || deciding.size() == open_->views.size();
+    for (auto& [id, rounds] : std::exchange(open_->decided, {})) {
+        if (rounds.empty()) continue;
+        open_->has_last_samples = false;
+        Scheduler& pass = *passes_.dispatcher.find(views_.find(id)->pass().view.id);
+        pass.hold_at(2 * session::MaxSamplesPerPixel);  // never: a step ends by itself
+        pass.begin_step(std::move(rounds));
+    }
+    if (!open_->has_last_samples) return;
+    for (const ViewState* other : deciding) passes_.dispatcher.find(other->pass().view.id)->begin_step({});
+}
+
+void LockstepGroup::advance_views() {
+    const bool is_picture = views_.find(open_->views.front())->is_last_pass();
+    const std::vector<ViewState*> stepping = is_picture ? views_with_steps() : std::vector<ViewState*>();
+    if (is_picture) open_->samples = std::min(2 * open_->samples, open_->spp);
+    open_->is_deciding = !stepping.empty();
+    for (const ViewId id : open_->views) {
+        ViewState& view = *views_.find(id);
+        if (std::ranges::find(stepping, &view) != stepping.end()) {
+            request_step(view);
+        } else if (is_picture) {
             passes_.dispatcher.find(view.pass().view.id)->hold_at(open_->samples * view.priority());
         } else {
             ++view.current;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,7 +18,8 @@ struct GroupView {
 };
 
 // A consistent state of all views of a group: same scene, revision, resolution scale and samples per pixel
-// (times the priority). When films are resampled, pixels may have different, higher sample counts.
+// (times the priority), in views with steps in the mean. When films are resampled, pixels may have different, higher sample
+// counts.
 struct GroupStage {
     SceneState scene;
     std::vector<view::View> views;  // as rendered at this stage; their films are complete
@@ -47,6 +49,8 @@ class LockstepGroup {
     // one wait for a busy consumer; others are skipped.
     enum class Consumer { Free, Busy };
     std::optional<GroupStage> advance(Consumer consumer);
+    // The next step of one of its views.
+    void take(ViewState& view, StepDecision&& decision);
     // The last advance() returned the first stage since the restart.
     bool is_first_stage() const { return open_ && open_->is_first_stage; }
     const std::vector<ViewId>& views() const;
@@ -58,6 +62,10 @@ class LockstepGroup {
         Version version;             // of the scene, published
         std::vector<ViewId> views;
         std::uint64_t samples = 0;  // of the current stage, when it has the full size
+        // Of the views with steps: the next ones, as they are decided; with one of each they begin.
+        std::map<ViewId, std::vector<Round>> decided;
+        bool is_deciding = false;
+        bool has_last_samples = false;  // no view has another step
         bool restart_wanted = true;
         bool resample_wanted = false;
         bool first_is_consumed = false, is_first_stage = false;
@@ -68,6 +76,9 @@ class LockstepGroup {
     bool is_stage_done() const;
     bool is_whole() const;
     bool mark_shown(bool is_last);
+    bool is_last_stage() const;
+    std::vector<ViewState*> views_with_steps();
+    void request_step(ViewState& view);
     void advance_views();
     GroupStage stage() const;
 

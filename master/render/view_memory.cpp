@@ -22,9 +22,9 @@ const filter::Description* denoiser_of(const view::View& view) {
 
 void ViewMemory::add(const session::ViewRequest& request) {
     bytes_ += film_bytes(request.view);
-    if (request.stop.has_steps()) {  // a decision reads a copy of the film
-        bytes_ +=
-            film_bytes(request.view) + picture::NoiseMap::BytesPerPixel * request.view.window.pixel_count();
+    if (request.has_steps()) {  // a decision reads a copy of the film
+        decision_ = std::max(decision_, film_bytes(request.view) + picture::NoiseMap::BytesPerPixel *
+                                                                       request.view.window.pixel_count());
     }
     const filter::Description* denoiser = denoiser_of(request.view);
     if (denoiser == nullptr) return;

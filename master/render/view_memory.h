@@ -16,10 +16,11 @@ class ViewMemory {
   public:
     // `request.view` is complete (master/render/view_request.h).
     void add(const session::ViewRequest& request);
-    std::uint64_t bytes() const { return bytes_; }
+    std::uint64_t bytes() const { return bytes_ + decision_; }
 
   private:
     std::uint64_t bytes_ = 0;
+    std::uint64_t decision_ = 0;  // the largest one: the steps of all views are decided one after another
     std::set<std::tuple<std::string_view, std::int32_t, std::int32_t>> shared_;  // name, width, height
 };
 

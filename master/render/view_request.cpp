@@ -117,10 +117,14 @@ void complete(view::View& view) {
     if (wanted != view::PathClass::Indirect) view.path_class = wanted;
 }
 
+bool has_noise(const view::View& view) {
+    return view.renderer == view::Renderer::PathTracing && view.channels.contains(frame::Channel::Radiance);
+}
+
 void complete(session::ViewRequest& request) {
     complete(request.view);
-    if (request.frames == session::Frames::All) request.stop.uniform = true;
-    if (!request.stop.has_steps()) return;
+    if (request.frames == session::Frames::All && !has_noise(request.view)) request.stop.uniform = true;
+    if (!request.has_steps()) return;
     request.view.channels.insert(frame::Channel::Radiance);
     request.view.channels.insert(frame::Channel::BlockVariance);
 }

@@ -19,6 +19,10 @@ std::string problem_of(const view::DisplayTransform& transform);
 // Why this machine cannot run the view's filter, with the remedy; "" if it can. Part of problem_of().
 std::string why_unavailable(const view::View& view);
 
+// Whether pixels can need different numbers of samples, and whether the film says so: what is drawn for navigation has no noise
+// to speak of.
+bool has_noise(const view::View& completed);
+
 // Adds what the view's filter needs: channels, and the path class where the filter is made for one.
 void complete(view::View& view);
 // The same, and what its stop rule needs.

@@ -112,7 +112,7 @@ PlanSettings ViewRunner::plan_of(const ViewState& view) const {
     // with a budget the filter needs a variance, which takes 2.
     if (pass.kind == Pass::Kind::Picture && !view.shows_all())
         plan.first_level = !view.run.deadline ? 2u : view.request.stop.has_budget() ? 1u : 0u;
-    if (pass.kind == Pass::Kind::Picture && view.request.stop.has_steps()) {
+    if (pass.kind == Pass::Kind::Picture && view.request.has_steps()) {
         plan.is_adaptive = true;
         plan.spp = session::StopRule::AdaptiveBase;
     }
@@ -226,7 +226,7 @@ void ViewRunner::advance_picture(ViewState& view, TimePoint now) {
                 now);
         }
     }
-    if (!run.outcome && view.request.stop.has_steps() && scheduler.paused()) request_step(view, now);
+    if (!run.outcome && view.request.has_steps() && scheduler.paused()) request_step(view, now);
     const bool is_settled = scheduler.idle() || now - run.outcome_at > settings_.stop_grace;
     if (run.outcome && !run.is_over() && is_settled && !scheduler.is_merging()) return finish(view, now);
     if (is_whole) show(view, now);
@@ -368,6 +368,7 @@ void ViewRunner::change_filter(ViewState& view, const FilterChange& change, Time
     Pass& picture = view.passes.back();
     picture.view.filter = change.view.filter;
     if (change.effect == FilterChange::Effect::Widened) {
+        view.run.is_widened = true;
         picture.view.channels = change.view.channels;
         if (view.is_last_pass()) {
             // Units in flight lack the channels: they are dealt again under a new revision.

@@ -25,6 +25,26 @@ void spend_time(const ViewState& view, TimePoint now, AdaptiveSettings& settings
     }
 }
 
+// A picture that is shown while it is rendered: `spp` is the mean of all pixels.
+void spend_samples(const ViewState& view, AdaptiveSettings& settings) {
+    constexpr std::uint64_t MostOfAPixel = 64;  // of the mean
+    const std::uint64_t spp = view.request.stop.spp;
+    settings.uniform = view.run.step_is_uniform;
+    if (settings.uniform) return;
+    settings.samples = spp * view.request.view.window.pixel_count();
+    settings.max_samples = std::min(session::MaxSamplesPerPixel, MostOfAPixel * spp);
+}
+
+// All samples after those of the first decision.
+std::vector<Round> uniform_rounds(std::uint64_t spp) {
+    std::vector<Round> rounds;
+    for (std::uint64_t first = session::StopRule::AdaptiveBase; first < spp; first *= 2) {
+        for (const frame::SampleBlock& block : frame::aligned_blocks(first, std::min(2 * first, spp)))
+            rounds.push_back({block, nullptr});
+    }
+    return rounds;
+}
+
 }  // namespace
 
 void ViewRunner::request_step(ViewState& view, TimePoint now) {
@@ -32,6 +52,9 @@ void ViewRunner::request_step(ViewState& view, TimePoint now) {
     const session::StopRule& stop = view.request.stop;
     const ViewId pass = view.pass().view.id;
     if (run.is_deciding || passes_.dispatcher.find(pass)->complete()) return;
+    if (run.is_widened)
+        return passes_.dispatcher.find(pass)->begin_step(run.steps++ == 0 ? uniform_rounds(stop.spp)
+                                                                          : std::vector<Round>());
     run.is_deciding = true;
     run.deciding_since = now;
     std::vector<std::uint32_t> closed;
@@ -39,7 +62,11 @@ void ViewRunner::request_step(ViewState& view, TimePoint now) {
         closed.push_back(failure.tile);
     AdaptiveSettings settings{
         .noise = stop.noise, .max_samples = stop.spp, .step = run.steps, .uniform = stop.uniform};
-    if (stop.noise == 0.0 && run.deadline) spend_time(view, now, settings);
+    if (stop.noise == 0.0 && run.deadline) {
+        spend_time(view, now, settings);
+    } else if (view.shows_all()) {
+        spend_samples(view, settings);
+    }
     passes_.film.decide(pass, view.pass().view.revision, settings, std::move(closed));
 }
 
@@ -51,8 +78,10 @@ void ViewRunner::take(ViewState& view, StepDecision&& decision, TimePoint now) {
     run.is_deciding = false;
     run.deciding += now - run.deciding_since;
     const bool has_chosen = !decision.step.rounds.empty();
-    if (!has_chosen && !run.outcome && view.request.stop.noise == 0.0 && !run.step_is_uniform) {
-        // No light was found yet, or the samples that are left are fewer than a pixel would get.
+    const bool may_be_uniform = view.request.stop.noise == 0.0 && !run.step_is_uniform &&
+                                (run.deadline || decision.step.noise == 0.0);
+    if (!has_chosen && !run.outcome && may_be_uniform) {
+        // No light was found yet, or the samples that are left in the time are fewer than a pixel would get.
         run.step_is_uniform = true;
         return request_step(view, now);
     }

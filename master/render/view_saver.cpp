@@ -25,7 +25,7 @@ void ViewSaver::save(Hash128 scene_hash) {
                  .blocks = {}};
         const Scheduler* pass = accumulating(view);
         if (pass == nullptr || pass->merged_samples() == 0) continue;
-        saved.steps = view.run.steps;
+        saved.steps = view.run.is_widened ? 0 : view.run.steps;
         if (saved.steps > 0) saved.step = saved_step(pass->rounds(), pass->tiles());
         saving_->revisions[id] = view.revision;
         saving_->waiting.insert(view.pass().view.id);

@@ -60,6 +60,8 @@ struct Run {
     std::uint64_t rays = 0, nonfinite_samples = 0;
     std::uint32_t steps = 0;   // of an adaptive picture
     bool is_deciding = false;  // the next one
+    bool is_widened =
+        false;  // its later samples have more channels: all pixels get as many, without decisions
     TimePoint deciding_since{};
     Duration deciding{0};          // in all steps
     bool step_is_uniform = false;  // with nothing but a clock: no pixel was chosen by its noise

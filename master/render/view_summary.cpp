@@ -35,7 +35,7 @@ session::ViewProgress progress_of(const ViewState& view, std::uint32_t nodes) {
     progress.samples = view.run.samples;
     const std::uint64_t pixels = last.window.pixel_count();
     progress.samples_expected = pixels * view.request.stop.spp;
-    if (view.request.stop.has_steps())
+    if (view.request.has_steps())
         progress.samples_expected =
             std::max(view.run.samples_expected, pixels * session::StopRule::AdaptiveBase);
     progress.noise = view.run.noise;

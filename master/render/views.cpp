@@ -20,6 +20,13 @@ bool differ_in_filter_alone(view::View a, view::View b) {
     return a == b;
 }
 
+// With the other filter, instead of from the start. Pixels with different numbers of samples cannot get further channels.
+bool goes_on(const ViewState& view, const FilterChange& change) {
+    if (change.effect != FilterChange::Effect::Widened) return change.effect == FilterChange::Effect::Kept;
+    const bool has_equal_samples = view.run.steps == 0 && !view.run.is_deciding;
+    return !view.run.outcome && (!view.request.has_steps() || has_equal_samples || view.run.is_widened);
+}
+
 bool may_change(const SessionRecord& asker, const ViewState& view) {
     return view.owner.session == asker.id || view.owner.user == asker.user ||
            asker.role == net::Role::Operator;
@@ -135,10 +142,7 @@ void Views::change(ViewState& view, session::ViewRequest&& request, const SceneI
     ++view.asked_revision;
     if (same_terms && !again && !view.restart_wanted && differ_in_filter_alone(asked, view.asked)) {
         const FilterChange change = filter_change(view.request.view, request.view.filter);
-        const bool goes_on = change.effect == FilterChange::Effect::Kept ||
-                             (change.effect == FilterChange::Effect::Widened && !view.run.outcome &&
-                              !view.request.stop.has_steps());
-        if (goes_on) {
+        if (goes_on(view, change)) {
             view.camera_revision = view.asked_revision;
             return runner_.change_filter(view, change, now);
         }
@@ -233,10 +237,11 @@ std::string Views::set_filter(const SessionRecord& asker, const std::string& nam
     wanted.view = change.view;
     if (const std::string why = room_problem(wanted, view.id); !why.empty()) refuse(why);
     if (view.shows_all()) {
+        const bool restarts = !goes_on(view, change);
         wanted.view = view.asked;
         wanted.view.filter = filter;
         this->change(view, std::move(wanted), {view.version, view.scene_hash}, false, now);
-        if (change.effect == FilterChange::Effect::Restarted)
+        if (restarts)
             return "filter " + change.view.filter +
                    "; the view restarts, since the filter needs other channels or path classes";
         return change.text;
@@ -244,7 +249,7 @@ std::string Views::set_filter(const SessionRecord& asker, const std::string& nam
     const bool has_features_first = !view.passes.empty() && !view.is_last_pass();
     if (has_features_first) refuse("the frame has just begun: try again in a moment");
     if (change.effect == FilterChange::Effect::Restarted) refuse(change.text);
-    if (change.effect == FilterChange::Effect::Widened && view.request.stop.has_steps()) {
+    if (change.effect == FilterChange::Effect::Widened && view.request.has_steps()) {
         refuse("filter '" + filter +
                "' needs channels that this frame lacks, and one whose pixels have the samples that they need "
                "gets no "
@@ -326,7 +331,10 @@ bool Views::take(RenderOutput& output, TimePoint now) {
     } else if (const auto* calibration = std::get_if<CalibrationResult>(&output)) {
         runner_.take(*calibration);
     } else if (auto* decision = std::get_if<StepDecision>(&output)) {
-        if (ViewState* view = table_.of_pass(decision->view)) runner_.take(*view, std::move(*decision), now);
+        ViewState* view = table_.of_pass(decision->view);
+        if (view == nullptr) return true;
+        view->in_group() ? group_.take(*view, std::move(*decision))
+                         : runner_.take(*view, std::move(*decision), now);
     } else if (auto* film = std::get_if<FilmBlocks>(&output)) {
         if (!picks_.take(*film)) (void)saver_.take(std::move(*film));
     } else {

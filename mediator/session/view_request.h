@@ -47,7 +47,8 @@ struct StopRule {
         false;  // if the budget is too small for 2 samples per pixel: render at half or a quarter of the size
     // Not 0: until the unfiltered picture has this estimated sqrt(relMSE); spp and times are upper bounds.
     double noise = 0.0;
-    // All pixels have as many samples; else, if noise or time end the picture, they have what they need.
+    // All pixels have as many samples. Else they have what they need if noise or time end the picture, or if it is shown
+    // while it is rendered; spp is then the mean.
     bool uniform = false;
 
     bool has_budget() const { return budget > Duration::zero(); }
@@ -95,6 +96,12 @@ struct ViewRequest {
     bool film_state = false;  // with `film`, of views that deliver their last frame: as blocks that can go on
     bool detached = false;    // a job: continues when the client leaves, and the master stores its picture
     view::DisplayTransform display_transform;  // of a PNG or JPEG
+
+    // After StopRule::AdaptiveBase samples there are steps, each with a decision.
+    bool has_steps() const {
+        const bool is_live = frames == Frames::All && !stop.uniform && stop.spp > StopRule::AdaptiveBase;
+        return is_live || stop.has_steps();
+    }
     static constexpr auto describe(auto row) {
         using Self = ViewRequest;
         return std::tuple(

@@ -96,6 +96,60 @@ TEST_F(Displays, OutputsRefineTogether) {
     EXPECT_GE(seen.size(), 3u) << "not only the last stage";
 }
 
+// With a denoiser, whose film says where there is noise: each view has masks of its own, all are shown in lockstep.
+TEST_F(Displays, OutputsAndEyesGetTheirSamplesWhereTheyAreNeeded) {
+    cluster.add_node("embree");
+    cluster.add_node("embree");
+    wall.spp = 256;
+    wall.filter = "gauss";
+    wall.outputs[0].stereo = display::Stereo::SideBySide;
+    wall.outputs[1].priority = 2;
+    ann->open_display(wall);
+    show("left");
+    show("right");
+    // Mean samples of two eyes, and of an output that may have twice as many.
+    const auto means = [&] {
+        std::map<std::string, std::uint64_t> means;
+        for (const session::ViewEntry& view : ann->members().views) {
+            EXPECT_EQ(view.spp, view.name == "display/right" ? 512u : 256u);
+            EXPECT_LE(view.samples, view.spp);
+            means[view.name] = view.samples;
+        }
+        return means;
+    };
+    const auto settled = [&] {
+        const auto before = means();
+        std::this_thread::sleep_for(1s);
+        const auto now = means();
+        return before == now && now.size() == 3 &&
+               std::ranges::all_of(now, [](const auto& view) { return view.second > 16; });
+    };
+    until(settled);
+    until([&] { return all_show(16); });
+    const auto at_the_end = means();
+    // The edges of a triangle have noise, the rest has none.
+    for (const auto& [name, output_client] : output_clients) {
+        const std::string view = name == "left" ? "display/left/left" : "display/right";
+        EXPECT_LT(output_client.frames.back().samples, at_the_end.at(view)) << name;
+    }
+    move_camera(0.5);  // a change begins again
+    until([&] { return means() != at_the_end; });
+    until(settled);
+}
+
+TEST_F(Displays, WithoutLightRefineInAllPixels) {
+    cluster.add_node("embree");
+    wall.spp = 32;
+    wall.filter = "gauss";
+    submit({scene::Update{ObjectId{first.value + 1},
+                          scene::Fields<scene::Material>(&scene::Material::emission).bits(),
+                          scene::Material{.emission = glm::vec3(0.0f)}}});
+    ann->open_display(wall);
+    show("left");
+    show("right");
+    until([&] { return all_show(32); });
+}
+
 TEST_F(Displays, AnOutputWithPriorityHasMoreSamples) {
     cluster.add_node("null");
     wall.outputs[1].priority = 4;

@@ -1,6 +1,8 @@
 // Views of a live scene: coarse first, finally the bits of a batch, and slow watchers delay no others.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
 #include <set>
 
 #include "mediator/frame/resolve.h"
@@ -52,6 +54,47 @@ struct LiveViews : testing::Test {
     }
     static bool complete(const client::Frame& frame) { return frame.complete; }
 };
+
+// The mean is what was asked for, and the bits depend on no node.
+TEST_F(LiveViews, GetTheirSamplesWhereTheyAreNeeded) {
+    constexpr std::uint64_t Spp = 48;
+    std::set<Hash256> hashes;
+    for (int nodes = 1; nodes <= 2; ++nodes) {
+        cluster.add_node("null");
+        session::ViewRequest request = view_of(100, 70, Spp);
+        request.film = true;
+        ann->request_view(1, request);
+        const client::Frame last = frames_until(*ann, complete).back();
+        const auto [least, most] = std::ranges::minmax(last.film->counts);
+        EXPECT_GE(least, 16u);
+        EXPECT_GT(most, Spp);
+        std::uint64_t samples = 0;
+        for (const std::uint32_t count : last.film->counts) samples += count;
+        EXPECT_LE(samples, Spp * 7000);
+        EXPECT_GT(samples, Spp * 7000 * 8 / 10);
+        hashes.insert(last.film_hash);
+        ann->close_view(1);
+    }
+    EXPECT_EQ(hashes.size(), 1u);
+}
+
+TEST_F(LiveViews, HaveAsManySamplesInAllPixelsIfAskedOrWithoutLight) {
+    cluster.add_node("embree");
+    session::ViewRequest request = view_of(64, 48, 48);
+    request.film = true;
+    request.stop.uniform = true;
+    const auto all_have = [&](std::uint32_t count) {
+        ann->request_view(1, request);
+        const client::Frame last = frames_until(*ann, complete).back();
+        return std::ranges::all_of(last.film->counts, [&](std::uint32_t n) { return n == count; });
+    };
+    EXPECT_TRUE(all_have(48));
+    // Nothing but darkness behind the camera: steps that double all pixels, as far as 48 goes.
+    request.stop.uniform = false;
+    request.view.camera =
+        view::perspective(glm::rotate(glm::dmat4(1.0), 3.14159, glm::dvec3(0.0, 1.0, 0.0)), 0.8, 64.0 / 48.0);
+    EXPECT_TRUE(all_have(32));
+}
 
 TEST_F(LiveViews, CoarseFirstAndFinallyTheBitsOfABatch) {
     cluster.add_node("embree");

@@ -294,13 +294,14 @@ class Session(SessionNames):
                   film: bool = False, name: str = "", filter: str | None = None, renderer: str = "path", bounces: int = 8,
                   seed: int = 0, channels: Sequence[str] = ("radiance",), layers: int = ALL_LAYERS,
                   clamp: float | None = None, budget: float | None = None, exposure: float | None = None,
-                  view_transform: str = "neutral") -> View:
+                  view_transform: str = "neutral", adaptive: bool = True) -> View:
         """A view from a camera of the scene (the object or its path) or a Pose (`look_at`). `picture`: "png", "jpeg", "exr",
         "planes" (filtered float32) or "none"; `film`: also deliver the statistics of `channels`. `layers`: a mask, bit i is
         object layer i; other objects are invisible. `clamp`: most that a path adds to a sample after its second bounce, which
         makes the picture too dark (biased); None: no limit. `filter`: the denoiser; None: "psvgf" for "png" and "jpeg"
         without `film`, else none. `budget`: time in seconds for samples, filter and encoding
-        together; `spp` is 64 by default, and without limit with a budget. `exposure` of "png" and "jpeg" in EV, None:
+        together; `spp` is 64 by default, and without limit with a budget: the mean of all pixels, which get the samples that
+        they need. Not `adaptive`: all pixels have as many. `exposure` of "png" and "jpeg" in EV, None:
         measured once, on the first picture; `view_transform`: "neutral", "agx", "reinhard" or "linear"."""
         if filter is None:
             filter = LIVE_FILTER if picture in ("png", "jpeg") and not film else ""
@@ -309,7 +310,9 @@ class Session(SessionNames):
         self.aim(view, at)
         if spp is None:
             spp = 64 if budget is None else MAX_SPP
-        return self._open(self._request(view, spp, picture, film, name, budget, exposure, view_transform))
+        request = self._request(view, spp, picture, film, name, budget, exposure, view_transform)
+        request.wanted.stop.uniform = not adaptive
+        return self._open(request)
 
     def render(self, at: CameraLike, *, size: tuple[int, int] = (1280, 720), spp: int | None = None, picture: str = "png",
                film: bool = False, filter: str = "", renderer: str = "path", bounces: int = 8, seed: int = 0,

@@ -13,6 +13,7 @@ session::ViewRequest request(const char* filter, std::int32_t width = 640, std::
     request.view.window = {0, 0, width, height};
     request.view.channels = {frame::Channel::Radiance};
     request.view.filter = filter;
+    request.stop.uniform = true;
     complete(request.view);
     return request;
 }
@@ -51,6 +52,16 @@ TEST(ViewMemory, DecisionsOfAdaptiveViewsReadACopyOfTheirFilm) {
     adaptive.stop = {.spp = 1024, .noise = 0.1};
     complete(adaptive);
     EXPECT_EQ(double(bytes({adaptive})), 2.0 * double(film_bytes(adaptive.view)) + 68.0 * Pixels);
+    // One after another.
+    EXPECT_EQ(double(bytes({adaptive, adaptive})), 3.0 * double(film_bytes(adaptive.view)) + 68.0 * Pixels);
+    session::ViewRequest live = request("none");
+    live.stop = {.spp = 64};
+    complete(live);
+    EXPECT_EQ(bytes({live}), bytes({adaptive}))
+        << "views that are shown while they are rendered have steps, too";
+    live.view.renderer = view::Renderer::Raster;
+    complete(live);
+    EXPECT_EQ(bytes({live}), film_bytes(live.view));
     EXPECT_GT(film_bytes(adaptive.view), film_bytes(request("none").view)) << "it has the variance of blocks";
 }
 
