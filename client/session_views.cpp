@@ -53,6 +53,7 @@ void Session::set_camera(std::uint64_t number, const view::CameraPose& camera) {
         throw Error(ErrorCode::InvalidInput, "view " + std::to_string(number) +
                                                  " was not requested by this session: request it first");
     known->second.wanted.view.camera = camera;
+    known->second.earlier.reset();  // its film is of the other camera
     if (self.state == Implementation::State::Joined) self.link.send(known->second);
 }
 

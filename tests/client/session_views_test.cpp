@@ -1,6 +1,9 @@
 // Views of a session: tiles in any order, stops, refusals, and lost masters.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "client/frame_collector.h"
 #include "client/render.h"
 #include "tests/client/session_fixture.h"
 
@@ -187,6 +190,39 @@ TEST_F(SessionViewsTest, InconsistentTilesAreAnError) {
         for (const wire::FrameTile& part : tiles) master.send(part);
         expect_error(rendered, ErrorCode::InvalidInput);
     }
+}
+
+// With a gap, twice the same, of another channel set, outside of the window.
+TEST_F(SessionViewsTest, InconsistentBlocksAreAnError) {
+    const auto block = [](std::uint32_t left, std::uint64_t first, const Rect& rect = {2, 1, 4, 3},
+                          const frame::ChannelSet& channels = {frame::Channel::Depth}) {
+        frame::FilmTile film(rect, {first, 1}, channels);
+        std::ranges::fill(film.counts, 2u);
+        return wire::FilmBlock{.frame = FrameNumber, .count = 1, .left = left, .film = film};
+    };
+    const std::vector<std::vector<wire::FilmBlock>> attacks{
+        {block(2, 0), block(0, 2)},
+        {block(1, 0), block(0, 0)},
+        {block(1, 0), block(0, 2, {2, 1, 4, 3}, {frame::Channel::Alpha})},
+        {block(0, 0, {3, 1, 4, 3})},
+        {block(1, 0), block(0, 2, {2, 1, 3, 3})},
+    };
+    for (const auto& blocks : attacks) {
+        FrameCollector collector;
+        collector.begin(header({.wanted = small_view()}, 1));
+        bool is_refused = false;
+        for (wire::FilmBlock part : blocks) is_refused = is_refused || !collector.add(std::move(part));
+        EXPECT_TRUE(is_refused) << blocks.size();
+        EXPECT_FALSE(collector.take());
+    }
+    FrameCollector collector;
+    collector.begin(header({.wanted = small_view()}, 1));
+    EXPECT_TRUE(collector.add(block(1, 0)));
+    EXPECT_TRUE(collector.add(block(0, 2)));
+    const auto frame = collector.take();
+    ASSERT_TRUE(frame && frame->film_state);
+    EXPECT_EQ(frame->film_state->blocks.size(), 1u) << "siblings are merged";
+    EXPECT_EQ(frame->film->counts.front(), 4u);
 }
 
 // A header with impossible sizes is rejected; memory is allocated for received data only.

@@ -6,6 +6,7 @@
 #include "mediator/frame/resolve.h"
 #include "tests/cluster/cluster_scene.h"
 #include "tests/cluster/loopback_cluster.h"
+#include "tests/cluster/raw_peer.h"
 
 namespace tessera::test {
 namespace {
@@ -169,6 +170,73 @@ TEST_F(ContinuedFilms, OfWhatTheViewIsNotAreRefused) {
     // The cluster is as good as before.
     EXPECT_EQ(continued_hash(render_from(cluster, continued_request(32), &good)),
               continued_hash(render_from(cluster, continued_request(32))));
+}
+
+// A peer with a scene, and its request for a view with film that the master has yet to fetch.
+struct FilmOfAPeer : testing::Test {
+    LoopbackCluster cluster;
+    wire::RequestView request{.request = 7, .number = 3, .wanted = continued_request(32), .earlier = wire::EarlierFilm{}};
+
+    FilmOfAPeer() {
+        request.earlier->film = {blake2b(std::as_bytes(std::span("film"))), 1000};
+        request.earlier->render_revision = frame::RenderRevision;
+        request.wanted.frames = session::Frames::Last;
+    }
+    RawPeer joined(net::Role role) {
+        RawPeer peer(cluster.channel(role, "eve"));
+        EXPECT_TRUE(peer.connect("eve"));
+        peer.send(wire::JoinScene{.title = "room", .name = "eve", .key = 5});
+        EXPECT_TRUE(peer.wait_for<wire::SceneJoined>());
+        return peer;
+    }
+    static void expect_refusal(RawPeer& peer, const std::string& reason, std::size_t n = 0) {
+        ASSERT_TRUE(peer.wait_for<wire::RequestDone>(n)) << reason;
+        const auto* done = peer.received<wire::RequestDone>(n);
+        EXPECT_FALSE(done->accepted);
+        EXPECT_EQ(done->request, 7u);
+        EXPECT_NE(done->text.find(reason), std::string::npos) << done->text;
+    }
+};
+
+TEST_F(FilmOfAPeer, ThatItDoesNotSendIsAnswered) {
+    RawPeer peer = joined(net::Role::Editor);
+    peer.send(request);
+    ASSERT_TRUE(peer.wait_for<wire::BlobRequest>());
+    // Again, as after a lost link: the request, and the view without its number.
+    peer.send(request);
+    wire::RequestView view = request;
+    view.request = 0;
+    peer.send(view);
+    peer.send(wire::BlobAbsent{request.earlier->film.hash});
+    expect_refusal(peer, "does not have");
+    peer.send(request);
+    ASSERT_TRUE(peer.wait_for<wire::BlobRequest>(1));
+    peer.send(wire::EndView{.number = 3});
+    expect_refusal(peer, "was ended", 1);
+    peer.send(request);
+    wire::RequestView other = request;
+    other.request = 8;
+    other.earlier.reset();
+    peer.send(other);
+    ASSERT_TRUE(peer.wait_for<wire::RequestDone>(2));
+    EXPECT_EQ(peer.received<wire::RequestDone>(2)->request, 8u);
+    EXPECT_TRUE(peer.received<wire::RequestDone>(2)->accepted) << "views without film wait for nothing";
+}
+
+TEST_F(FilmOfAPeer, IsNotTakenFromViewers) {
+    const auto ann = cluster.member("ann", std::make_shared<scene::BlobStore>());
+    RawPeer peer = joined(net::Role::Viewer);
+    peer.send(request);
+    expect_refusal(peer, "a viewer");
+}
+
+TEST_F(FilmOfAPeer, MayNotBeLargerThanTheMastersMemory) {
+    RawPeer peer = joined(net::Role::Editor);
+    request.earlier->film.byte_size = std::uint64_t{1} << 45;
+    peer.send(request);
+    ASSERT_TRUE(peer.wait_for<wire::RequestDone>());
+    EXPECT_FALSE(peer.received<wire::RequestDone>()->accepted);
+    EXPECT_EQ(peer.received<wire::BlobRequest>(), nullptr);
 }
 
 }  // namespace
