@@ -10,6 +10,7 @@ import unittest
 
 import tessera
 from scripted_master import PNG
+from tessera import bulk
 from tessera.proto import common_pb2, view_pb2
 from with_master import WithMaster
 
@@ -32,6 +33,19 @@ class Views(WithMaster):
         self.assertTrue(view.wait(samples=1000).complete)
         with self.assertRaisesRegex(tessera.Unavailable, "after 0.1 s"):
             view.wait(samples=1, timeout=0.1)
+
+    def test_a_frame_that_a_rejoin_cuts_off_is_acknowledged(self):
+        """Else the master, which sends one frame at a time, would send no other."""
+        view = self.session.open_view(self.POSE, size=(8, 4), spp=64)
+        view.wait(samples=1)
+        with self.session.connection.changed:
+            view.began(bulk.FrameHeader(view.number, 99, 1, 1, 1, 1, 8, 4, 3, 2, 100, 0, 0, 0, 0, 0, 0, 1, 1, 64, bytes(32)),
+                       time.monotonic())
+            view.reopened()
+        deadline = time.monotonic() + 10
+        while self.master.members[1].taken.get(view.number) != 99 and time.monotonic() < deadline:
+            time.sleep(0.01)
+        self.assertEqual(self.master.members[1].taken[view.number], 99)
 
     def test_planes_and_film(self):
         view = self.session.open_view(self.POSE, size=(4, 2), spp=4, picture="planes", film=True,

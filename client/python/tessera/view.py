@@ -188,7 +188,7 @@ class View:
 
     def reopened(self) -> Message:
         """The request to resend to a master that may have lost messages."""
-        self._assembly = None
+        self._pass_over()  # a resumed session may be sending the frame: it waits until it is acknowledged
         self._end = None
         self._seen_revision, self._revision = 0, 1  # a restarted master restarts its numbers
         request = control_pb2.Control()
