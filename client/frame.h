@@ -24,6 +24,8 @@ struct Frame {
     std::optional<frame::FilmTile> film;         // of the whole window; pixels without samples have count 0
     std::optional<frame::FilmState> film_state;  // of the same film, if the request asks for it
     std::uint64_t min_samples = 0, max_samples = 0, spp = 0;  // per pixel
+    double mean_samples = 0.0;                                // likewise
+    double noise = 0.0;  // of its samples at the last decision: sqrt(relMSE); 0: unknown
     bool complete = false;
     Hash256 film_hash;  // if complete, and if the view delivers every frame
 };

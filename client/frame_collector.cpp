@@ -109,6 +109,8 @@ std::optional<Frame> FrameCollector::take() {
                  .min_samples = header.min_samples,
                  .max_samples = header.max_samples,
                  .spp = header.spp,
+                 .mean_samples = header.mean_samples,
+                 .noise = header.noise,
                  .complete = header.complete,
                  .film_hash = header.film_hash};
 }

@@ -23,7 +23,7 @@ struct OutputFrame {
     };
     std::uint64_t number = 0;
     Version version;
-    std::uint64_t samples = 0;      // minimum per pixel
+    std::uint64_t samples = 0;      // per pixel in the mean
     std::vector<Picture> pictures;  // left eye first
 };
 

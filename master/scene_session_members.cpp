@@ -124,7 +124,8 @@ void SceneSession::handle(SessionRecord& session, const wire::ReadMembers& reque
              .height = live.request.view.height,
              .samples = live.shown ? live.shown->samples / live.request.view.window.pixel_count() : 0,
              .spp = live.request.stop.spp,
-             .watchers = views_.watchers(id)});
+             .watchers = views_.watchers(id),
+             .noise = live.run.noise});
     }
     services_.outbox.control(session.control, fitting({request.request, std::move(members)}));
 }

@@ -7,16 +7,16 @@ namespace tessera::master {
 void SessionService::request_view(SessionRecord& session, const wire::RequestView& request, TimePoint now) {
     if (!request.earlier || request.share) return scene_.handle(session, request, now);
     if (session.role == net::Role::Viewer) {
-        return outbox_.control(session.control,
-                               wire::RequestDone{request.request, false,
-                                                 "a viewer cannot send film to continue: use an editor's key"});
+        return outbox_.control(
+            session.control, wire::RequestDone{request.request, false,
+                                               "a viewer cannot send film to continue: use an editor's key"});
     }
     wire::RequestView wanted = request;
     if (session.continuing) {
         // A client that has lost its link sends its request again, and its view without the number of the request.
         const wire::RequestView& before = *session.continuing;
-        const bool is_again = before.number == wanted.number &&
-                              (wanted.request == 0 || wanted.request == before.request);
+        const bool is_again =
+            before.number == wanted.number && (wanted.request == 0 || wanted.request == before.request);
         if (is_again) {
             wanted.request = before.request;
         } else {

@@ -230,12 +230,18 @@ class Render {
             plan_.job.view.filter = plan_.view.view.filter;
         }
         ProgressLine line;
-        result_ = client::render(
-            *session_, plan_.job,
-            [&](const session::ViewProgress& progress) { line.show(where_ + describe(progress, plan_.job)); },
-            interrupts_.token(),
-            plan_.sequence ? client::Session::AfterEnd::Keep : client::Session::AfterEnd::Close,
-            film_ ? &film_->film : nullptr);
+        const auto show = [&](const session::ViewProgress& progress) {
+            line.show(where_ + describe(progress, plan_.job));
+        };
+        try {
+            result_ = client::render(
+                *session_, plan_.job, show, interrupts_.token(),
+                plan_.sequence ? client::Session::AfterEnd::Keep : client::Session::AfterEnd::Close,
+                film_ ? &film_->film : nullptr);
+        } catch (const Error& error) {
+            if (!film_ || error.code() != ErrorCode::Refused) throw;
+            throw Error(error.code(), "--continue '" + film_->path + "': " + error.what());
+        }
     }
 
     // Complete pictures only: the fractions of a partial picture would be wrong.

@@ -76,18 +76,18 @@ Json picture_value(const session::ViewSummary& result) {
 
 // The noise of a picture that was to have one, and what ended it; or of one that had a time.
 std::string noise_text(const session::StopRule& stop, const session::ViewSummary& result) {
-    const bool is_late =
-        result.outcome == session::Outcome::TimeUp;  // samples have come since the last decision
+    const bool is_complete = result.outcome == session::Outcome::Complete;
+    // Else samples have come since the last decision.
+    const char* bound = is_complete ? "" : " or less";
     if (stop.noise == 0.0) return result.noise > 0.0 ? formatted("noise %.3g or less", result.noise) : "";
     if (!stop.has_steps()) return "noise unknown: it takes 16 samples of a pixel, and --spp 32 or more";
-    const bool is_complete = result.outcome == session::Outcome::Complete;
     const bool is_known = result.noise > 0.0 || is_complete;  // 0: it is black
-    if (is_known && result.noise <= stop.noise) return formatted("noise %.3g: as wanted", result.noise);
-    return (is_known ? formatted("noise %.3g%s: ", result.noise, is_late ? " or less" : "")
-                     : std::string("noise unknown: ")) +
-           (is_late       ? "the time was up before it was as wanted"
-            : is_complete ? "--spp was reached before it was as wanted"
-                          : "the picture ended before it was as wanted");
+    if (is_known && result.noise <= stop.noise)
+        return formatted("noise %.3g%s: as wanted", result.noise, bound);
+    return (is_known ? formatted("noise %.3g%s: ", result.noise, bound) : std::string("noise unknown: ")) +
+           (result.outcome == session::Outcome::TimeUp ? "the time was up before it was as wanted"
+            : is_complete                              ? "--spp was reached before it was as wanted"
+                                                       : "the picture ended before it was as wanted");
 }
 
 std::string before_text(const session::ViewRequest& request, const session::ViewSummary& result) {

@@ -13,6 +13,7 @@
 #include "client/tools/cluster_options.h"
 #include "client/tools/display_transform_options.h"
 #include "client/tools/filter_options.h"
+#include "client/tools/formatted.h"
 #include "client/tools/interrupts.h"
 #include "client/tools/pictures.h"
 #include "client/tools/terminal_picture.h"
@@ -187,13 +188,14 @@ class Watch {
         if (!display_.transform.exposure) display_.transform.exposure = picture::measured_exposure(image);
         if (options_.output)
             write_picture(*options_.output, image, display_.transform, display_.custom_view());
-        char text[160];
-        std::snprintf(text, sizeof text, "frame %llu, version %llu, %ux%u%s, %llu of %llu samples%s",
+        char text[200];
+        std::snprintf(text, sizeof text, "frame %llu, version %llu, %ux%u%s, %.4g of %llu samples%s%s",
                       static_cast<unsigned long long>(count),
                       static_cast<unsigned long long>(frame.version.number), frame.width, frame.height,
                       frame.scale > 1 ? (" (1/" + std::to_string(frame.scale) + ")").c_str() : "",
-                      static_cast<unsigned long long>(frame.min_samples),
-                      static_cast<unsigned long long>(frame.spp), frame.complete ? ", complete" : "");
+                      frame.mean_samples, static_cast<unsigned long long>(frame.spp),
+                      frame.noise > 0.0 ? formatted(", noise %.3g", frame.noise).c_str() : "",
+                      frame.complete ? ", complete" : "");
         if (to_terminal_) {
             const auto rgb = picture::display_bytes(image, display_.transform, display_.custom_view());
             const std::string picture = terminal_picture(width, height, rgb);

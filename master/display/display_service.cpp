@@ -269,7 +269,7 @@ void DisplayService::send_waiting(TimePoint now) {
     const Frame& frame = *open_->latest;
     open_->version = frame.version;
     for (std::size_t i = 0; i < frame.outputs.size(); ++i) {
-        open_->samples[i] = frame.outputs[i].min_samples;
+        open_->samples[i] = frame.outputs[i].samples;
         if (frame.outputs[i].request.stereo_difference)
             open_->stereo_differences[i] = frame.outputs[i].stereo_difference;
     }
@@ -293,7 +293,7 @@ void DisplayService::send(std::size_t index) {
                                   .width = picture.width,
                                   .height = picture.height,
                                   .encoding = output.request.encoding,
-                                  .samples = output.min_samples,
+                                  .samples = output.samples,
                                   .total = picture.bytes->size()};
         const std::span<const std::byte> bytes(*picture.bytes);
         for (; piece.offset < bytes.size(); piece.offset += PictureChunkBytes) {

@@ -143,13 +143,15 @@ Delivery::PendingFrame Delivery::frame_of(const ViewState& view, const FrameForm
                       .revision = view.camera_revision,
                       .encoding = format.picture,
                       .spp = view.request.stop.spp,
-                      .complete = view.shown->complete};
+                      .complete = view.shown->complete,
+                      .noise = view.run.noise};
     pending.is_end = view.shown->complete && view.run.outcome.has_value();
     if (view.passes.empty()) return pending;
     const Pass& pass = view.passes[view.shown->pass];
     pending.header.scale = pass.scale;
     pending.header.width = static_cast<std::uint32_t>(pass.view.window.width);
     pending.header.height = static_cast<std::uint32_t>(pass.view.window.height);
+    pending.header.mean_samples = double(view.shown->samples) / double(pass.view.window.pixel_count());
     return pending;
 }
 

@@ -84,6 +84,9 @@ void FilmStore::run(std::stop_token stop) {
             std::visit([this](auto& chosen) { perform(chosen); }, task);
         } catch (const std::exception& error) {
             outputs_.put(TaskFailure{std::string("a task of the film store failed: ") + error.what()});
+            // The view ends with the samples that it has, instead of waiting for ever.
+            if (const auto* decide = std::get_if<Decide>(&task))
+                outputs_.put(StepDecision{decide->view, decide->revision, {}});
         }
         if (const auto* film = std::get_if<Film>(&task)) {
             const std::scoped_lock done(mutex_);
@@ -216,7 +219,7 @@ void FilmStore::perform(Decide& task) {
                             (rect.x - film.rect.x),
                         rect.width, std::uint8_t{255});
     }
-    Step step = next_step(film, doublings, assembler.tiles(), task.settings);
+    Step step = next_step(film, doublings, assembler.tiles(), task.settings, &arena_);
     opened->step = step.rounds;
     outputs_.put(StepDecision{task.view, task.revision, std::move(step)});
 }

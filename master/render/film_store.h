@@ -136,6 +136,7 @@ class FilmStore {
     // Only used by the store's thread:
     std::map<ViewId, OpenFilm> films_;
     std::map<ViewId, std::shared_ptr<const frame::FilmTile>> features_;  // of pictures that are not open yet
+    tbb::task_arena arena_;                                              // of decisions
 
     mutable std::mutex mutex_;  // protects the members below
     std::condition_variable_any changed_;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 
 #include "master/render/compose/layers.h"
 #include "mediator/base/error.h"
@@ -161,10 +162,10 @@ struct MeasuredEye {
 OutputResult reconstruct_output(OutputRequest request, const std::vector<frame::FilmTile>& films,
                                 Reconstructor& reconstructor) {
     OutputResult result{.request = std::move(request), .eyes = {}};
-    result.min_samples = ~std::uint64_t{0};
+    result.samples = ~std::uint64_t{0};
     for (const frame::FilmTile& film : films) {
-        result.min_samples = std::min<std::uint64_t>(
-            result.min_samples, *std::min_element(film.counts.begin(), film.counts.end()));
+        const std::uint64_t all = std::accumulate(film.counts.begin(), film.counts.end(), std::uint64_t{0});
+        result.samples = std::min(result.samples, all / film.counts.size());
     }
     try {
         const picture::ViewTransform& transform = result.request.transform;

@@ -34,7 +34,7 @@ struct OutputResult {
         std::shared_ptr<const std::vector<std::byte>> bytes;  // empty when it failed
     };
     std::vector<Picture> eyes;
-    std::uint64_t min_samples = 0;
+    std::uint64_t samples = 0;  // per pixel in the mean, of the film with the fewest
     double stereo_difference = 0.0;
     std::string error;
 };

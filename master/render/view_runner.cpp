@@ -368,9 +368,9 @@ void ViewRunner::change_filter(ViewState& view, const FilterChange& change, Time
     Pass& picture = view.passes.back();
     picture.view.filter = change.view.filter;
     if (change.effect == FilterChange::Effect::Widened) {
-        view.run.is_widened = true;
         picture.view.channels = change.view.channels;
         if (view.is_last_pass()) {
+            view.run.is_widened = true;
             // Units in flight lack the channels: they are dealt again under a new revision.
             picture.view.revision = ++view.revision;
             if (view.shown) view.shown->revision = view.revision;

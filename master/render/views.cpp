@@ -305,6 +305,7 @@ bool Views::scene_changed(const scene::ChangeList& changes, const scene::Scene& 
         view.scene_hash = after.state_hash();
         if (restarts) {
             view.earlier.reset();
+            view.earlier_kind.clear();
             view.problem.clear();
             view.restart_wanted = true;
             passes_.end_all(view);

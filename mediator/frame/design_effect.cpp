@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 
+#include "mediator/base/bands.h"
+
 namespace tessera::frame {
 
 namespace {
 
-constexpr std::size_t Radius = 4, Rows = 2 * Radius + 1;
+constexpr std::size_t Radius = 4, Rows = 2 * Radius + 1, BandRows = 64;
 
 // Sums over pixels: errors of blocks and of their halves (merge.h), variance of the means of independent samples, and
 // variance of the first of these, as it is and if samples were independent.
@@ -68,7 +70,7 @@ float effect(double top, double below, double independent, double uncertainty, d
 
 }  // namespace
 
-std::span<const float> DesignEffect::measure(const FilmTile& film) {
+std::span<const float> DesignEffect::measure(const FilmTile& film, tbb::task_arena* arena) {
     effects_.assign(film.pixel_count(), 1.0f);
     const bool is_known =
         film.channels.contains(Channel::BlockVariance) && film.channels.contains(Channel::Radiance);
@@ -76,24 +78,36 @@ std::span<const float> DesignEffect::measure(const FilmTile& film) {
     if (!is_known || std::ranges::all_of(film.counts, is_single)) return effects_;
     const auto width = static_cast<std::size_t>(film.rect.width);
     const auto height = static_cast<std::size_t>(film.rect.height);
+    // A band does 2 Radius rows again that belong to its neighbours.
+    const std::size_t band = arena != nullptr ? BandRows : height;
+    const std::size_t size = TermCount * ((Rows + 1) * width + width + 2 * Radius);
+    scratch_.resize((height + band - 1) / band * size);
+    for_bands(arena, height, band, [&](std::size_t first, std::size_t last) {
+        measure_rows(film, first, last, std::span(scratch_).subspan(first / band * size, size));
+    });
+    return effects_;
+}
+
+void DesignEffect::measure_rows(const FilmTile& film, std::size_t first, std::size_t last,
+                                std::span<double> scratch) {
+    const auto width = static_cast<std::size_t>(film.rect.width);
+    const auto height = static_cast<std::size_t>(film.rect.height);
     const std::size_t row_size = TermCount * width, padded = width + 2 * Radius;
-    // The last rows, pooled along x, one after another in a ring; their sum; one row.
-    scratch_.resize((Rows + 1) * row_size + TermCount * padded);
-    const std::span<double> all(scratch_);
-    const std::span<double> sums = all.subspan(Rows * row_size, row_size);
-    const std::span<double> row = all.subspan((Rows + 1) * row_size);
-    for (std::size_t last = 0; last < height + Radius; ++last) {
-        if (last < height) {
-            fill_row(film, last, width, row);
+    // The newest rows, pooled along x, one after another in a ring; their sum; one row.
+    const std::span<double> sums = scratch.subspan(Rows * row_size, row_size);
+    const std::span<double> row = scratch.subspan((Rows + 1) * row_size);
+    for (std::size_t newest = first < Radius ? 0 : first - Radius; newest < last + Radius; ++newest) {
+        if (newest < height) {
+            fill_row(film, newest, width, row);
             for (std::size_t term = 0; term < TermCount; ++term)
                 pool_row(row.subspan(term * padded, padded),
-                         all.subspan((last % Rows) * row_size + term * width, width));
+                         scratch.subspan((newest % Rows) * row_size + term * width, width));
         }
-        if (last < Radius) continue;
-        const std::size_t y = last - Radius;
+        if (newest < first + Radius) continue;
+        const std::size_t y = newest - Radius;
         std::ranges::fill(sums, 0.0);
-        for (std::size_t k = y < Radius ? 0 : y - Radius; k <= std::min(last, height - 1); ++k) {
-            const double* pooled = &scratch_[(k % Rows) * row_size];
+        for (std::size_t k = y < Radius ? 0 : y - Radius; k <= std::min(newest, height - 1); ++k) {
+            const double* pooled = &scratch[(k % Rows) * row_size];
             for (std::size_t i = 0; i < row_size; ++i) sums[i] += pooled[i];
         }
         for (std::size_t x = 0; x < width; ++x) {
@@ -102,7 +116,6 @@ std::span<const float> DesignEffect::measure(const FilmTile& film) {
                        sums[Uncertainty * width + x], sums[Chance * width + x]);
         }
     }
-    return effects_;
 }
 
 }  // namespace tessera::frame

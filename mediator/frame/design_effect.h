@@ -1,5 +1,7 @@
 #pragma once
 
+#include <tbb/task_arena.h>
+
 #include <span>
 #include <vector>
 
@@ -18,10 +20,12 @@ namespace tessera::frame {
 // decrease went on as between the last two levels.
 class DesignEffect {
   public:
-    // Valid until the next call, which reuses the memory.
-    std::span<const float> measure(const FilmTile& film);
+    // Valid until the next call, which reuses the memory. Without an arena in this thread; the same bits either way.
+    std::span<const float> measure(const FilmTile& film, tbb::task_arena* arena = nullptr);
 
   private:
+    void measure_rows(const FilmTile& film, std::size_t first, std::size_t last, std::span<double> scratch);
+
     std::vector<float> effects_;
     std::vector<double> scratch_;
 };

@@ -26,10 +26,10 @@ std::size_t index_of(const Rect& window, const Rect& tile, std::uint32_t pixel) 
     return y * static_cast<std::size_t>(window.width) + x;
 }
 
-// Copies count and planes of a pixel.
+// Copies count and planes of a pixel; `to` may have no planes.
 void copy(const frame::FilmTile& from, std::size_t i, frame::FilmTile& to, std::size_t j) {
     to.counts[j] = from.counts[i];
-    for (std::uint32_t plane = 0; plane < from.channels.plane_count(); ++plane)
+    for (std::uint32_t plane = 0; plane < to.channels.plane_count(); ++plane)
         to.plane(plane)[j] = from.plane(plane)[i];
 }
 
@@ -53,9 +53,22 @@ std::vector<PixelBlocks> pixel_blocks(const Rect& window, frame::ChannelSet chan
     return slots;
 }
 
-bool same_bits(const frame::FilmTile& a, const frame::FilmTile& b) {
-    return a.counts == b.counts &&
-           std::memcmp(a.planes.data(), b.planes.data(), a.planes.size() * sizeof(float)) == 0;
+// Whether each pixel has one block, whose bits are those of the film.
+bool is_film(const frame::FilmTile& film, const std::vector<frame::FilmTile>& blocks) {
+    std::size_t pixels = 0;
+    for (const frame::FilmTile& block : blocks) {
+        pixels += block.pixel_count();
+        for (std::size_t i = 0; i < block.pixel_count(); ++i) {
+            const std::size_t pixel = index_of(film.rect, block.rect, block.pixels.index(i));
+            if (block.counts[i] != film.counts[pixel]) return false;
+            for (std::uint32_t plane = 0; plane < film.channels.plane_count(); ++plane) {
+                if (std::bit_cast<std::uint32_t>(block.plane(plane)[i]) !=
+                    std::bit_cast<std::uint32_t>(film.plane(plane)[pixel]))
+                    return false;
+            }
+        }
+    }
+    return pixels == film.pixel_count();
 }
 
 void add_planes(const std::string& name, const frame::FilmTile& film, std::vector<Layer>& layers) {
@@ -113,13 +126,15 @@ frame::FilmTile cut(const PixelBlocks& slot, const Rect& window, const Rect& til
 
 std::vector<Layer> state_layers(const frame::FilmTile& film, const frame::FilmState& state) {
     std::vector<Layer> layers;
-    const std::vector<PixelBlocks> slots = pixel_blocks(film.rect, film.channels, state.blocks);
-    const bool is_the_film = slots.size() == 1 && same_bits(slots.front().film, film);
+    // Without a copy of the planes in the usual case, since films are large.
+    const bool needs_planes = !is_film(film, state.blocks);
+    const std::vector<PixelBlocks> slots =
+        pixel_blocks(film.rect, needs_planes ? film.channels : frame::ChannelSet(), state.blocks);
     for (std::size_t k = 0; k < slots.size(); ++k) {
         const std::string name = "blocks." + std::to_string(k);
         layers.push_back(integers(name, "first", film.rect, slots[k].first));
         layers.push_back(integers(name, "size", film.rect, slots[k].size));
-        if (!is_the_film) add_planes(name, slots[k].film, layers);
+        if (needs_planes) add_planes(name, slots[k].film, layers);
     }
     if (state.wanted.empty()) return layers;
     std::vector<std::uint32_t> wanted(film.rect.pixel_count(), 0);

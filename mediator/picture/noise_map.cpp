@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "mediator/base/bands.h"
 #include "mediator/frame/design_effect.h"
 #include "mediator/picture/color.h"
 
@@ -11,48 +12,69 @@ namespace tessera::picture {
 
 namespace {
 
-constexpr std::ptrdiff_t BrightnessRadius = 2, DeviationRadius = 4;
+constexpr std::size_t BrightnessRadius = 2, DeviationRadius = 4;
 constexpr double RareShare = 1.0 / 8.0;
 
 enum class Own : std::uint8_t { Included, LeftOut };
 
+constexpr std::size_t BandRows = 16;
+
+// Rows of a picture, in bands.
+struct Rows {
+    std::size_t width, height;
+    tbb::task_arena* arena;
+
+    // function(first, last) of the pixels of a band.
+    template <class Function>
+    void each(const Function& function) const {
+        for_bands(arena, height, BandRows,
+                  [&](std::size_t first, std::size_t last) { function(first * width, last * width); });
+    }
+};
+
 // Sums over squares around each pixel, clipped to the picture; its own value is never subtracted, which would leave rounding.
 class SquareSum {
   public:
-    SquareSum(std::ptrdiff_t width, std::ptrdiff_t height) : width_(width), height_(height) {}
+    explicit SquareSum(const Rows& rows) : rows_(rows) {}
 
-    void apply(std::vector<float>& values, std::ptrdiff_t radius, Own own = Own::Included) {
-        rows_.resize(values.size());
-        if (own == Own::LeftOut) rows_of_others_.resize(values.size());
-        padded_.assign(static_cast<std::size_t>(width_ + 2 * radius), 0.0f);
-        for (std::ptrdiff_t y = 0; y < height_; ++y) {
-            std::copy_n(values.begin() + y * width_, width_, padded_.begin() + radius);
-            float* const row = &rows_[static_cast<std::size_t>(y * width_)];
-            std::fill_n(row, width_, 0.0f);
-            for (std::ptrdiff_t k = 0; k <= 2 * radius; ++k) {
-                if (k != radius) add(row, &padded_[static_cast<std::size_t>(k)]);
+    void apply(std::vector<float>& values, std::size_t radius, Own own = Own::Included) {
+        across_.resize(values.size());
+        if (own == Own::LeftOut) across_others_.resize(values.size());
+        for_bands(rows_.arena, rows_.height, BandRows, [&](std::size_t first, std::size_t last) {
+            std::vector<float> padded(rows_.width + 2 * radius, 0.0f);
+            for (std::size_t y = first; y < last; ++y) sum_row(values, y, radius, own, padded);
+        });
+        for_bands(rows_.arena, rows_.height, BandRows, [&](std::size_t first, std::size_t last) {
+            for (std::size_t y = first; y < last; ++y) {
+                float* const to = &values[y * rows_.width];
+                std::fill_n(to, rows_.width, 0.0f);
+                const std::size_t end = std::min(rows_.height, y + radius + 1);
+                for (std::size_t k = y < radius ? 0 : y - radius; k < end; ++k) {
+                    const std::vector<float>& from = k == y && own == Own::LeftOut ? across_others_ : across_;
+                    add(to, &from[k * rows_.width]);
+                }
             }
-            if (own == Own::LeftOut)
-                std::copy_n(row, width_, &rows_of_others_[static_cast<std::size_t>(y * width_)]);
-            add(row, &padded_[static_cast<std::size_t>(radius)]);
-        }
-        for (std::ptrdiff_t y = 0; y < height_; ++y) {
-            float* const to = &values[static_cast<std::size_t>(y * width_)];
-            std::fill_n(to, width_, 0.0f);
-            const std::ptrdiff_t last = std::min(height_ - 1, y + radius);
-            for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(0, y - radius); k <= last; ++k) {
-                const std::vector<float>& rows = k == y && own == Own::LeftOut ? rows_of_others_ : rows_;
-                add(to, &rows[static_cast<std::size_t>(k * width_)]);
-            }
-        }
+        });
     }
 
   private:
-    void add(float* to, const float* from) const {
-        for (std::ptrdiff_t x = 0; x < width_; ++x) to[x] += from[x];
+    void sum_row(const std::vector<float>& values, std::size_t y, std::size_t radius, Own own,
+                 std::vector<float>& padded) {
+        const std::size_t at = y * rows_.width;
+        std::copy_n(&values[at], rows_.width, &padded[radius]);
+        float* const row = &across_[at];
+        std::fill_n(row, rows_.width, 0.0f);
+        for (std::size_t k = 0; k <= 2 * radius; ++k) {
+            if (k != radius) add(row, &padded[k]);
+        }
+        if (own == Own::LeftOut) std::copy_n(row, rows_.width, &across_others_[at]);
+        add(row, &padded[radius]);
     }
-    std::ptrdiff_t width_, height_;
-    std::vector<float> rows_, rows_of_others_, padded_;
+    void add(float* to, const float* from) const {
+        for (std::size_t x = 0; x < rows_.width; ++x) to[x] += from[x];
+    }
+    Rows rows_;
+    std::vector<float> across_, across_others_;
 };
 
 // Squared brightness of each pixel in one component. Its mean is shrunk to that of its neighbours as far as their differences
@@ -60,46 +82,54 @@ class SquareSum {
 // too little if it were divided by its neighbours. What is left of the variance is added: the square's expectation.
 class Brightness {
   public:
-    Brightness(std::ptrdiff_t width, std::ptrdiff_t height, std::span<const float> known)
-        : squares_(width, height), known_(known), count_(known.begin(), known.end()) {
+    Brightness(const Rows& rows, std::span<const float> known)
+        : rows_(rows), squares_(rows), known_(known), count_(known.begin(), known.end()) {
         squares_.apply(count_, BrightnessRadius);
     }
 
     // `variance`: of the mean, finite.
     void estimate(std::span<const float> mean, std::span<const float> variance) {
-        constexpr float Largest = 1e18f;  // its square is finite
         for (std::vector<float>* sum : {&value_, &others_, &sum_of_squares_, &noise_})
             sum->resize(mean.size());
-        for (std::size_t i = 0; i < mean.size(); ++i) {
-            const float value = known_[i] > 0.0f ? std::clamp(mean[i], -Largest, Largest) : 0.0f;
-            value_[i] = others_[i] = value;
-            sum_of_squares_[i] = value * value;
-            noise_[i] = known_[i] * variance[i];
-        }
+        rows_.each([&](std::size_t first, std::size_t last) {
+            constexpr float Largest = 1e18f;  // its square is finite
+            for (std::size_t i = first; i < last; ++i) {
+                const float value = known_[i] > 0.0f ? std::clamp(mean[i], -Largest, Largest) : 0.0f;
+                value_[i] = others_[i] = value;
+                sum_of_squares_[i] = value * value;
+                noise_[i] = known_[i] * variance[i];
+            }
+        });
         squares_.apply(others_, BrightnessRadius, Own::LeftOut);
         for (std::vector<float>* sum : {&sum_of_squares_, &noise_}) squares_.apply(*sum, BrightnessRadius);
-        for (std::size_t i = 0; i < mean.size(); ++i) {
-            if (known_[i] == 0.0f) continue;
-            const float near = (others_[i] + value_[i]) / count_[i];
-            // Two standard errors of the variance of so many normally distributed means are no difference.
-            const float chance = 1.0f + 2.0f * std::sqrt(2.0f / count_[i]);
-            const float differences =
-                std::max(0.0f, (sum_of_squares_[i] - chance * noise_[i]) / count_[i] - near * near);
-            const float own = differences > 0.0f ? differences / (differences + variance[i]) : 0.0f;
-            const float others = count_[i] > 1.0f ? others_[i] / (count_[i] - 1.0f) : near;
-            const auto square = [&](float prior) {
-                const float value = prior + own * (value_[i] - prior);
-                return value * value + own * variance[i];
-            };
-            others_[i] = square(others);
-            value_[i] = square(near);
-        }
+        rows_.each([&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) {
+                if (known_[i] > 0.0f) shrink(i, variance[i]);
+            }
+        });
     }
     // With and without the pixel among its neighbours.
     std::span<const float> of_all() const { return value_; }
     std::span<const float> of_others() const { return others_; }
 
   private:
+    void shrink(std::size_t i, float variance) {
+        const float near = (others_[i] + value_[i]) / count_[i];
+        // Two standard errors of the variance of so many normally distributed means are no difference.
+        const float chance = 1.0f + 2.0f * std::sqrt(2.0f / count_[i]);
+        const float differences =
+            std::max(0.0f, (sum_of_squares_[i] - chance * noise_[i]) / count_[i] - near * near);
+        const float own = differences > 0.0f ? differences / (differences + variance) : 0.0f;
+        const float others = count_[i] > 1.0f ? others_[i] / (count_[i] - 1.0f) : near;
+        const auto square = [&](float prior) {
+            const float value = prior + own * (value_[i] - prior);
+            return value * value + own * variance;
+        };
+        others_[i] = square(others);
+        value_[i] = square(near);
+    }
+
+    Rows rows_;
     SquareSum squares_;
     std::span<const float> known_;
     std::vector<float> count_, value_, others_, sum_of_squares_, noise_;
@@ -118,38 +148,69 @@ float floor_of(const frame::FilmTile& film, std::uint32_t radiance) {
     return static_cast<float>(std::clamp(0.01 * mean * mean, 1e-30, 1e30));
 }
 
+// Averages the deviations of pixels. `known`: 1 for those with two samples or more, `count` of them.
+void average(const Rows& rows, const frame::FilmTile& film, std::vector<float>& known,
+             const std::vector<float>& per_sample, const std::vector<float>& finds, double count,
+             std::vector<float>& deviations) {
+    SquareSum squares(rows);
+    squares.apply(deviations, DeviationRadius);
+    squares.apply(known, DeviationRadius);
+    double excess = 0.0;
+    for (std::size_t i = 0; i < deviations.size(); ++i) {
+        deviations[i] /= std::max(known[i], 1.0f);
+        if (film.counts[i] < 2) continue;
+        const float beyond = per_sample[i] - deviations[i] * deviations[i];
+        if (beyond > 0.0f) excess += double(beyond) / std::max(double(finds[i]), 1.0);
+    }
+    const auto rare = static_cast<float>(RareShare * excess / count);
+    rows.each([&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
+            deviations[i] = std::sqrt(deviations[i] * deviations[i] + rare);
+    });
+}
+
 }  // namespace
 
-NoiseMap::NoiseMap(const frame::FilmTile& film) : deviations_(film.pixel_count(), 0.0f) {
-    const std::uint32_t first = film.channels.first_plane(frame::Channel::Radiance);
+NoiseMap::NoiseMap(const frame::FilmTile& film, tbb::task_arena* arena)
+    : deviations_(film.pixel_count(), 0.0f) {
+    const Rows rows{static_cast<std::size_t>(film.rect.width), static_cast<std::size_t>(film.rect.height),
+                    arena};
+    const std::uint32_t first_plane = film.channels.first_plane(frame::Channel::Radiance);
     const std::size_t pixels = film.pixel_count();
-    const float floor = floor_of(film, first);
+    const float floor = floor_of(film, first_plane);
     frame::DesignEffect design_effect;
-    const std::span<const float> effects = design_effect.measure(film);
-    SquareSum squares(film.rect.width, film.rect.height);
+    const std::span<const float> effects = design_effect.measure(film, arena);
     std::vector<float> known(pixels);
     for (std::size_t i = 0; i < pixels; ++i) known[i] = film.counts[i] >= 2 ? 1.0f : 0.0f;
-    Brightness brightness(film.rect.width, film.rect.height, known);
+    Brightness brightness(rows, known);
     std::vector<float> per_sample(pixels), variance(pixels), finds(pixels);
     double relative = 0.0, count = 0.0;
     for (std::uint32_t c = 0; c < 3; ++c) {
-        const std::span<const float> mean = film.plane(first + c), m2 = film.plane(first + 3 + c);
-        for (std::size_t i = 0; i < pixels; ++i) {
-            const float n = static_cast<float>(film.counts[i]);
-            // Finite, so that one pixel does not make the whole picture infinite.
-            variance[i] = known[i] > 0.0f ? std::min(m2[i] / ((n - 1.0f) * n) * effects[i], 1e30f) : 0.0f;
-        }
+        const std::span<const float> mean = film.plane(first_plane + c), m2 = film.plane(first_plane + 3 + c);
+        rows.each([&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) {
+                const float n = static_cast<float>(film.counts[i]);
+                // Finite, so that one pixel does not make the whole picture infinite.
+                variance[i] = known[i] > 0.0f ? std::min(m2[i] / ((n - 1.0f) * n) * effects[i], 1e30f) : 0.0f;
+            }
+        });
         brightness.estimate(mean, variance);
         const std::span<const float> of_all = brightness.of_all(), of_others = brightness.of_others();
+        rows.each([&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) {
+                if (known[i] == 0.0f) continue;
+                const float n = static_cast<float>(film.counts[i]);
+                per_sample[i] += std::min(variance[i] * n / (of_all[i] + floor), 1e30f) / 3.0f;
+                variance[i] = std::min(variance[i] / (of_others[i] + floor), 1e30f);
+                // (sum x)^2 / sum x^2
+                const double sum = double(n) * double(mean[i]);
+                const double squares_sum = double(m2[i]) + sum * double(mean[i]);
+                finds[i] += squares_sum > 0.0 ? static_cast<float>(sum * sum / squares_sum / 3.0) : 0.0f;
+            }
+        });
+        // In the order of the pixels, whatever threads there are.
         for (std::size_t i = 0; i < pixels; ++i) {
-            if (known[i] == 0.0f) continue;
-            const float n = static_cast<float>(film.counts[i]);
-            per_sample[i] += std::min(variance[i] * n / (of_all[i] + floor), 1e30f) / 3.0f;
-            relative += double(std::min(variance[i] / (of_others[i] + floor), 1e30f)) / 3.0;
-            // (sum x)^2 / sum x^2
-            const double sum = double(n) * double(mean[i]);
-            const double squares_sum = double(m2[i]) + sum * double(mean[i]);
-            finds[i] += squares_sum > 0.0 ? static_cast<float>(sum * sum / squares_sum / 3.0) : 0.0f;
+            if (known[i] > 0.0f) relative += double(variance[i]) / 3.0;
         }
     }
     for (std::size_t i = 0; i < pixels; ++i) {
@@ -159,17 +220,7 @@ NoiseMap::NoiseMap(const frame::FilmTile& film) : deviations_(film.pixel_count()
     }
     if (count == 0.0) return;
     noise_ = std::sqrt(relative / count);
-    squares.apply(deviations_, DeviationRadius);
-    squares.apply(known, DeviationRadius);
-    double excess = 0.0;
-    for (std::size_t i = 0; i < pixels; ++i) {
-        deviations_[i] /= std::max(known[i], 1.0f);
-        if (film.counts[i] < 2) continue;
-        const float beyond = per_sample[i] - deviations_[i] * deviations_[i];
-        if (beyond > 0.0f) excess += double(beyond) / std::max(double(finds[i]), 1.0);
-    }
-    const auto rare = static_cast<float>(RareShare * excess / count);
-    for (float& deviation : deviations_) deviation = std::sqrt(deviation * deviation + rare);
+    average(rows, film, known, per_sample, finds, count, deviations_);
 }
 
 std::vector<float> noise_of_pixels(const frame::FilmTile& film) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <tbb/task_arena.h>
+
 #include <vector>
 
 #include "mediator/frame/film_tile.h"
@@ -34,11 +36,12 @@ namespace tessera::picture {
 class NoiseMap {
   public:
     // That it takes while it is made, or pixels are chosen by it.
-    static constexpr std::size_t BytesPerPixel = 68;
+    static constexpr std::size_t BytesPerPixel = 76;
 
     // Of a film of all pixels of its rectangle, with Radiance; pixels with fewer than two samples have the noise of their
     // neighbours.
-    explicit NoiseMap(const frame::FilmTile& film);
+    // Without an arena in this thread; the same bits either way.
+    explicit NoiseMap(const frame::FilmTile& film, tbb::task_arena* arena = nullptr);
 
     // Estimated sqrt(relMSE). 0: no pixel has two samples, or there is no light.
     double noise() const { return noise_; }

@@ -36,13 +36,14 @@ struct ObjectLock {
 struct ViewEntry {
     std::string name, owner;
     std::uint32_t width = 0, height = 0;
-    std::uint64_t samples = 0, spp = 0;  // per pixel: minimum so far, and final
+    std::uint64_t samples = 0, spp = 0;  // per pixel: mean so far, and final
     std::uint64_t watchers = 0;
+    double noise = 0.0;  // as in ViewProgress
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "name", &ViewEntry::name), row(2, "owner", &ViewEntry::owner),
                           row(3, "width", &ViewEntry::width), row(4, "height", &ViewEntry::height),
                           row(5, "samples", &ViewEntry::samples), row(6, "spp", &ViewEntry::spp),
-                          row(7, "watchers", &ViewEntry::watchers));
+                          row(7, "watchers", &ViewEntry::watchers), row(8, "noise", &ViewEntry::noise));
     }
 };
 struct Members {

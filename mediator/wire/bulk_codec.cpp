@@ -265,6 +265,7 @@ const char* FrameHeader::malformed() const {
     constexpr std::uint64_t MaxFilmPixels = std::uint64_t{1} << 28;
     constexpr std::int32_t MaxEdge = 65536;
     if (scale == 0) return "a scale of 0";
+    if (!(mean_samples >= 0.0 && noise >= 0.0)) return "a number of samples or a noise that is no number";
     if ((film_tiles == 0) != film_window.empty()) return "film without a window, or a window without film";
     if (film_tiles == 0) return nullptr;
     if (film_window.x < 0 || film_window.y < 0 || film_window.width > MaxEdge ||

@@ -80,7 +80,9 @@ struct FrameHeader {
     std::uint32_t film_tiles = 0;
     std::uint64_t min_samples = 0, max_samples = 0, spp = 0;  // per pixel, and the final number
     bool complete = false;
-    Hash256 film_hash;  // when complete, of a view whose every frame is delivered
+    Hash256 film_hash;          // when complete, of a view whose every frame is delivered
+    double mean_samples = 0.0;  // per pixel
+    double noise = 0.0;         // as in session::ViewProgress
     static constexpr auto describe(auto row) {
         using Self = FrameHeader;
         return std::tuple(
@@ -91,7 +93,8 @@ struct FrameHeader {
             row(10, "picture_bytes", &Self::picture_bytes), row(11, "film_window", &Self::film_window),
             row(12, "film_tiles", &Self::film_tiles), row(13, "complete", &Self::complete),
             row(14, "min_samples", &Self::min_samples), row(15, "max_samples", &Self::max_samples),
-            row(16, "spp", &Self::spp), row(17, "film_hash", &Self::film_hash));
+            row(16, "spp", &Self::spp), row(17, "film_hash", &Self::film_hash),
+            row(18, "mean_samples", &Self::mean_samples), row(19, "noise", &Self::noise));
     }
     const char* malformed() const;
 };
@@ -144,7 +147,7 @@ struct OutputPicture {
     view::CameraPose camera;  // camera it was rendered with, in display space
     std::uint32_t width = 0, height = 0;
     session::PictureEncoding encoding = session::PictureEncoding::Bytes;  // or Half
-    std::uint64_t samples = 0;                                            // per pixel, minimum
+    std::uint64_t samples = 0;                                            // per pixel, in the mean
     std::uint64_t total = 0, offset = 0;                                  // bytes of the picture
     std::vector<std::byte> data;                                          // at most 1 MiB
     static constexpr auto describe(auto row) {

@@ -175,7 +175,8 @@ TEST_F(ContinuedFilms, OfWhatTheViewIsNotAreRefused) {
 // A peer with a scene, and its request for a view with film that the master has yet to fetch.
 struct FilmOfAPeer : testing::Test {
     LoopbackCluster cluster;
-    wire::RequestView request{.request = 7, .number = 3, .wanted = continued_request(32), .earlier = wire::EarlierFilm{}};
+    wire::RequestView request{
+        .request = 7, .number = 3, .wanted = continued_request(32), .earlier = wire::EarlierFilm{}};
 
     FilmOfAPeer() {
         request.earlier->film = {blake2b(std::as_bytes(std::span("film"))), 1000};

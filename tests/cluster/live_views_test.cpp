@@ -71,6 +71,8 @@ TEST_F(LiveViews, GetTheirSamplesWhereTheyAreNeeded) {
         std::uint64_t samples = 0;
         for (const std::uint32_t count : last.film->counts) samples += count;
         EXPECT_LE(samples, Spp * 7000);
+        EXPECT_DOUBLE_EQ(last.mean_samples, double(samples) / 7000.0);
+        EXPECT_GT(last.noise, 0.0);
         EXPECT_GT(samples, Spp * 7000 * 8 / 10);
         hashes.insert(last.film_hash);
         ann->close_view(1);

@@ -265,6 +265,17 @@ TEST(DesignEffect, IsOneWhereNothingIsKnown) {
     EXPECT_TRUE(all_ones(without));
 }
 
+TEST(DesignEffect, HasTheSameBitsOnAnyNumberOfThreads) {
+    for (const auto& [width, height] : {std::pair{20, 130}, {9, 64}, {3, 2}}) {
+        const FilmTile film = film_of(width, height, 16, random_color);
+        const std::vector<float> alone = design_effect(film);
+        tbb::task_arena arena(3);
+        DesignEffect effect;
+        const std::span<const float> all = effect.measure(film, &arena);
+        EXPECT_TRUE(std::ranges::equal(all, alone)) << width << "x" << height;
+    }
+}
+
 TEST(DesignEffect, IsFiniteAndPositiveOverTheWholeRangeOfFloats) {
     for (const double scale : {1e-30, 1e-10, 1e10, 1e18, 1e30}) {
         const auto draw = [&](std::uint32_t pixel, std::uint64_t sample) {

@@ -135,7 +135,7 @@ class Bulk(unittest.TestCase):
     MESSAGES = [
         bulk.BulkHello(5), bulk.BlobRequest(bytes(32), 7), bulk.BlobChunk(bytes(32), 10, 3, b"abc"),
         bulk.BlobAbsent(bytes(32)), bulk.FrameTile(3, 0, 2, FILM), bulk.PictureChunk(3, 10, 3, b"abc"),
-        bulk.FrameHeader(1, 2, 3, 4, 5, 1, 8, 4, 3, 2, 10, 0, 0, 8, 4, 1, 0, 1, 2, 3, bytes(32)),
+        bulk.FrameHeader(1, 2, 3, 4, 5, 1, 8, 4, 3, 2, 10, 0, 0, 8, 4, 1, 0, 1, 2, 3, bytes(32), 1.5, 0.25),
     ]
 
     def test_round_trip(self):

@@ -247,7 +247,9 @@ std::vector<BulkMessage> bulk_messages() {
                         .max_samples = 2,
                         .spp = 64,
                         .complete = true,
-                        .film_hash = blake2b({})}};
+                        .film_hash = blake2b({}),
+                        .mean_samples = 1.5,
+                        .noise = 0.25}};
 }
 
 }  // namespace tessera::wire

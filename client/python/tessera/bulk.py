@@ -80,6 +80,8 @@ class FrameHeader:
     max_samples: int
     spp: int
     film_hash: bytes
+    mean_samples: float = 0.0
+    noise: float = 0.0
 
 
 BulkMessage = BulkHello | BlobRequest | BlobChunk | BlobAbsent | FrameTile | PictureChunk | FrameHeader
@@ -91,7 +93,7 @@ _BLOB_CHUNK = struct.Struct("<32sQQ")
 _HASH = struct.Struct("<32s")
 _TILE_HEAD = struct.Struct("<QII")
 _PICTURE_CHUNK = struct.Struct("<QQQ")
-_FRAME_HEADER = struct.Struct("<QQQQQIIIIIQiiiiIIQQQ32s")
+_FRAME_HEADER = struct.Struct("<QQQQQIIIIIQiiiiIIQQQ32sdd")
 _FILM_HEAD = struct.Struct("<iiiiQIIQB")
 _UNIFORM_COUNTS = 1  # a flag
 
@@ -118,7 +120,7 @@ def encode(message: BulkMessage) -> bytes:
                 message.view, message.frame, message.epoch, message.number, message.revision, message.scale,
                 message.width, message.height, message.components, message.encoding, message.picture_bytes,
                 message.film_x, message.film_y, message.film_width, message.film_height, message.film_tiles, message.complete, message.min_samples, message.max_samples, message.spp,
-                message.film_hash)
+                message.film_hash, message.mean_samples, message.noise)
 
 
 def decode(data: bytes) -> BulkMessage:

@@ -37,6 +37,8 @@ class Frame(SampleCountNames):
     components: int
     data: bytes = field(repr=False)  # the file, or the float32 planes one after another
     tiles: tuple[FilmTile, ...] = field(default=(), repr=False)
+    mean_samples: float = 0.0  # per pixel
+    noise: float = 0.0  # of the samples at the last decision: the root of relMSE; 0 = unknown
 
     def planes(self) -> list["array[float]"]:
         """The filtered float32 picture, one array for each component in raster order; of picture="planes"."""
@@ -118,4 +120,4 @@ class Assembly:
         return Frame(h.frame, (h.epoch, h.number), h.revision, h.scale, h.width, h.height, h.min_samples,
                      h.max_samples, h.spp, bool(h.complete), h.film_hash if h.complete else b"",
                      bulk.ENCODINGS[h.encoding], h.components, bytes(self.picture),
-                     tuple(self.tiles[i] for i in sorted(self.tiles)))
+                     tuple(self.tiles[i] for i in sorted(self.tiles)), h.mean_samples, h.noise)

@@ -43,6 +43,7 @@ class ViewEntry:
     samples: int
     spp: int
     watchers: int
+    noise: float = 0.0  # as in Progress
 
 
 @dataclass(frozen=True)
@@ -174,7 +175,7 @@ def members_of(answer: Message) -> Members:
         tuple(Member(p.session, text(p.name), text(p.user), text(p.text), tuple(p.selection), p.editor,
                      p.clock_offset_seconds, p.clock_bound_seconds) for p in message.members),
         tuple(Lock(lock.object, text(lock.name)) for lock in message.locks),
-        tuple(ViewEntry(text(v.name), text(v.owner), v.width, v.height, v.samples, v.spp, v.watchers)
+        tuple(ViewEntry(text(v.name), text(v.owner), v.width, v.height, v.samples, v.spp, v.watchers, v.noise)
               for v in message.views))
 
 

@@ -96,14 +96,14 @@ class View:
 
     def wait(self, samples: int = 1, timeout: float = 60.0) -> Frame:
         """Waits for a frame with all edits of this session and the current camera, with at least `samples` samples per pixel
-        (or complete); 0 also accepts coarse pictures. Raises Unavailable at the timeout."""
+        in the mean (or complete); 0 also accepts coarse pictures. Raises Unavailable at the timeout."""
         deadline = time.monotonic() + timeout
         while True:
             frame = self.next_frame(max(0.0, deadline - time.monotonic()))
             if frame is None:
                 raise Unavailable(f"no picture with {samples} samples after {timeout:g} s: is a node connected?")
             fresh = frame.revision >= self._revision and self._session.shows_all(frame.version)
-            full = samples == 0 or (frame.scale == 1 and frame.min_samples >= samples)
+            full = samples == 0 or (frame.scale == 1 and max(frame.mean_samples, frame.min_samples) >= samples)
             if fresh and (full or frame.complete):
                 return frame
 

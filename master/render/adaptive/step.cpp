@@ -45,11 +45,11 @@ struct Candidate {
 class Chooser {
   public:
     Chooser(const frame::FilmTile& film, std::span<const std::uint8_t> doublings,
-            const AdaptiveSettings& settings)
+            const AdaptiveSettings& settings, tbb::task_arena* arena)
         : film_(film),
           doublings_(doublings),
           settings_(settings),
-          noise_(film),
+          noise_(film, arena),
           is_chosen_(film.pixel_count(), false) {}
 
     double noise() const { return noise_.noise(); }
@@ -189,8 +189,8 @@ class Chooser {
 }  // namespace
 
 Step next_step(const frame::FilmTile& film, std::span<const std::uint8_t> doublings,
-               std::span<const Rect> tiles, const AdaptiveSettings& settings) {
-    Chooser chooser(film, doublings, settings);
+               std::span<const Rect> tiles, const AdaptiveSettings& settings, tbb::task_arena* arena) {
+    Chooser chooser(film, doublings, settings, arena);
     Step step{.noise = chooser.noise(), .rounds = {}};
     if (settings.noise > 0.0 && step.noise <= settings.noise) {
         step.samples_expected = chooser.samples();

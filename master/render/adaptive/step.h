@@ -1,5 +1,7 @@
 #pragma once
 
+#include <tbb/task_arena.h>
+
 #include <cstdint>
 #include <map>
 #include <span>
@@ -36,8 +38,10 @@ struct Step {
 // sample first, until the prediction is reached or the samples are used up. One eighth of the step goes to pixels by a
 // low-discrepancy order instead, because the estimate may have missed something. Where no pixel needs as much, those that gain
 // most are doubled all the same, as long as there are samples.
+// Without an arena in this thread; the same step either way.
 Step next_step(const frame::FilmTile& film, std::span<const std::uint8_t> doublings,
-               std::span<const Rect> tiles, const AdaptiveSettings& settings);
+               std::span<const Rect> tiles, const AdaptiveSettings& settings,
+               tbb::task_arena* arena = nullptr);
 
 // Pixels of a tile, ascending, by the level of their block [2^level, 2^(level + 1)) and the index of the tile.
 using PixelsByRound = std::map<std::pair<std::uint32_t, std::size_t>, std::vector<std::uint32_t>>;

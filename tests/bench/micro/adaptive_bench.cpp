@@ -27,13 +27,14 @@ void copy_of_the_film(benchmark::State& state) {
 }
 BENCHMARK(copy_of_the_film)->Unit(benchmark::kMillisecond);
 
-// range: a thousandth of the noise that is wanted. Most pixels are doubled to reach 0.01, few to reach 0.1.
+// range: a thousandth of the noise that is wanted, then threads. Most pixels are doubled to reach 0.01, few to reach 0.1.
 void decision(benchmark::State& state) {
     const AdaptiveSettings settings{.noise = 1e-3 * double(state.range(0)), .max_samples = 4096};
     const SimulatedPicture& rendered = picture();
+    tbb::task_arena arena(static_cast<int>(state.range(1)));
     std::uint64_t pixels = 0;
     for (auto _ : state) {
-        const Step step = rendered.next(settings);
+        const Step step = rendered.next(settings, &arena);
         pixels = 0;
         for (const Round& round : step.rounds) {
             for (const RoundMask& mask : *round.masks) pixels += mask.pixels;
@@ -41,7 +42,8 @@ void decision(benchmark::State& state) {
     }
     state.counters["pixels"] = double(pixels);
 }
-BENCHMARK(decision)->Arg(10)->Arg(100)->Unit(benchmark::kMillisecond);
+BENCHMARK(decision)->Args({10, 1})->Args({10, 2})->Args({100, 1})->Args({100, 2})->UseRealTime()->Unit(
+    benchmark::kMillisecond);
 
 }  // namespace
 

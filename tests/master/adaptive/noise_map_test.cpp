@@ -106,5 +106,21 @@ TEST(Noise, StaysFiniteWithAnyValues) {
     }
 }
 
+// However the rows are divided: also pictures lower than a band, or than what is averaged over.
+TEST(Noise, HasTheSameBitsOnAnyNumberOfThreads) {
+    for (const auto& [width, height] : {std::pair{131, 200}, {33, 17}, {5, 3}, {1, 70}, {70, 1}}) {
+        frame::FilmTile film = SimulatedPicture(width, height, 32, uniform_noise(0.3)).film();
+        for (std::size_t i = 0; i < film.pixel_count(); i += 7)
+            film.counts[i] = static_cast<std::uint32_t>(i % 3);
+        const NoiseMap alone(film);
+        for (const int threads : {1, 2, 5}) {
+            tbb::task_arena arena(threads);
+            const NoiseMap map(film, &arena);
+            EXPECT_EQ(map.noise(), alone.noise()) << width << "x" << height;
+            EXPECT_EQ(map.deviations(), alone.deviations()) << width << "x" << height;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace tessera::master

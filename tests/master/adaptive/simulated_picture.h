@@ -33,9 +33,9 @@ class SimulatedPicture {
     std::vector<std::uint8_t> doublings() const { return film_.doublings(); }
     std::uint64_t samples() const { return samples_; }
 
-    Step next(const AdaptiveSettings& settings) const {
+    Step next(const AdaptiveSettings& settings, tbb::task_arena* arena = nullptr) const {
         const std::vector<std::uint8_t> known = doublings();
-        return next_step(film(), known, tiles_, settings);
+        return next_step(film(), known, tiles_, settings, arena);
     }
     void render(const std::vector<Round>& rounds) {
         for (const Round& round : rounds) {

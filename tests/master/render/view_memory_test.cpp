@@ -51,9 +51,9 @@ TEST(ViewMemory, DecisionsOfAdaptiveViewsReadACopyOfTheirFilm) {
     session::ViewRequest adaptive = request("none");
     adaptive.stop = {.spp = 1024, .noise = 0.1};
     complete(adaptive);
-    EXPECT_EQ(double(bytes({adaptive})), 2.0 * double(film_bytes(adaptive.view)) + 68.0 * Pixels);
+    EXPECT_EQ(double(bytes({adaptive})), 2.0 * double(film_bytes(adaptive.view)) + 76.0 * Pixels);
     // One after another.
-    EXPECT_EQ(double(bytes({adaptive, adaptive})), 3.0 * double(film_bytes(adaptive.view)) + 68.0 * Pixels);
+    EXPECT_EQ(double(bytes({adaptive, adaptive})), 3.0 * double(film_bytes(adaptive.view)) + 76.0 * Pixels);
     session::ViewRequest live = request("none");
     live.stop = {.spp = 64};
     complete(live);
