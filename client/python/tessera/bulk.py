@@ -150,6 +150,8 @@ def decode(data: bytes) -> BulkMessage:
         return PictureChunk(frame, total, offset, _piece(payload[_PICTURE_CHUNK.size:], total, offset))
     if kind == _FRAME:
         header = FrameHeader(*_whole(_FRAME_HEADER, payload))
+        if not (header.mean_samples >= 0.0 and header.noise >= 0.0):
+            raise Malformed("a number of samples or a noise that is no number")
         if header.scale == 0 or header.encoding >= len(ENCODINGS):
             raise Malformed("a frame's scale or encoding is unknown")
         if header.width > _MAX_EDGE or header.height > _MAX_EDGE or header.components > 4:
