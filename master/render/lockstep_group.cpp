@@ -208,13 +208,10 @@ std::vector<ViewState*> LockstepGroup::views_with_steps() {
 }
 
 void LockstepGroup::request_step(ViewState& view) {
-    constexpr std::uint64_t MostOfAPixel = 64;  // of the mean
-    const std::uint64_t mean = open_->spp * view.priority();
     const ViewId pass = view.pass().view.id;
-    AdaptiveSettings settings{.step = view.run.steps, .uniform = view.run.step_is_uniform};
-    settings.max_samples =
-        settings.uniform ? mean : std::min(session::MaxSamplesPerPixel, MostOfAPixel * mean);
-    if (!settings.uniform) settings.samples = mean * view.pass().view.window.pixel_count();
+    const AdaptiveSettings settings =
+        settings_of_mean(open_->spp * view.priority(), view.pass().view.window.pixel_count(), view.run.steps,
+                         view.run.step_is_uniform);
     std::vector<std::uint32_t> closed;
     for (const TileFailure& failure : passes_.dispatcher.find(pass)->failed_tiles())
         closed.push_back(failure.tile);

@@ -25,16 +25,6 @@ void spend_time(const ViewState& view, TimePoint now, AdaptiveSettings& settings
     }
 }
 
-// A picture that is shown while it is rendered: `spp` is the mean of all pixels.
-void spend_samples(const ViewState& view, AdaptiveSettings& settings) {
-    constexpr std::uint64_t MostOfAPixel = 64;  // of the mean
-    const std::uint64_t spp = view.request.stop.spp;
-    settings.uniform = view.run.step_is_uniform;
-    if (settings.uniform) return;
-    settings.samples = spp * view.request.view.window.pixel_count();
-    settings.max_samples = std::min(session::MaxSamplesPerPixel, MostOfAPixel * spp);
-}
-
 // All samples after those of the first decision.
 std::vector<Round> uniform_rounds(std::uint64_t spp) {
     std::vector<Round> rounds;
@@ -65,7 +55,8 @@ void ViewRunner::request_step(ViewState& view, TimePoint now) {
     if (stop.noise == 0.0 && run.deadline) {
         spend_time(view, now, settings);
     } else if (view.shows_all()) {
-        spend_samples(view, settings);
+        settings = settings_of_mean(stop.spp, view.request.view.window.pixel_count(), run.steps,
+                                    run.step_is_uniform);
     }
     passes_.film.decide(pass, view.pass().view.revision, settings, std::move(closed));
 }

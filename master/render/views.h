@@ -29,8 +29,6 @@ class Views {
           Outbox& outbox, const EventSink& events, std::function<std::string(ObjectId)> name_of);
 
     // ---- clients ----
-    // Again with the same number: changes camera, size or quality; changing only the filter keeps the film. Returns
-    // "" or the problem.
     struct SceneInFilm {
         Version version;
         Hash128 hash;
@@ -40,6 +38,8 @@ class Views {
         std::optional<EarlierFilm> film;
         std::string kind;  // of the nodes that rendered it
     };
+    // Again with the same number: changes camera, size or quality; changing only the filter keeps the film, as long as it
+    // can get the channels that the filter needs. Returns "" or the problem.
     std::string open(const ViewOwner& owner, std::uint64_t number, session::ViewRequest request,
                      const SceneInFilm& scene, TimePoint now, Continued&& continued = {});
     // Watches the existing view of this name.

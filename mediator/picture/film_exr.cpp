@@ -48,21 +48,6 @@ std::string plane_name(std::uint32_t plane) {
     return "p" + std::to_string(plane);
 }
 
-// The raw planes of a channel, in the order of the film.
-Layer statistics_layer(const frame::FilmTile& film, const frame::ChannelInfo& entry) {
-    const std::uint32_t count = entry.plane_count(), first = film.channels.first_plane(entry.channel);
-    Layer layer{
-        Prefix + "." + std::string(entry.name), {}, frame::Image(film.rect.width, film.rect.height, count)};
-    for (std::uint32_t plane = 0; plane < count; ++plane) {
-        layer.components.push_back(plane_name(plane));
-        const auto values = film.plane(first + plane);
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            std::memcpy(&layer.image.values[i * count + plane], &values[i], sizeof(float));
-        }
-    }
-    return layer;
-}
-
 // Variance of the mean (of stratified samples, if the film has their block variance) and of single samples.
 void add_variances(const frame::FilmTile& film, std::vector<Layer>& layers) {
     const std::vector<std::string> rgb{"R", "G", "B"};
@@ -259,7 +244,8 @@ void write_film_exr(const std::string& path, const FilmFile& file,
     for (const frame::ChannelInfo& entry : frame::channel_table()) {
         if (!film.channels.contains(entry.channel)) continue;
         attributes["tessera/merge/" + std::string(entry.name)] = std::string(enumerator_name(entry.rule));
-        if (statistics == Statistics::Include) layers.push_back(statistics_layer(film, entry));
+        if (statistics == Statistics::Include)
+            layers.push_back(plane_layer(Prefix + "." + std::string(entry.name), film, entry));
         if (entry.channel == Channel::ObjectIndex) {
             layers.push_back(object_layer(film));
         } else if (entry.channel == picture) {

@@ -74,17 +74,8 @@ bool is_film(const frame::FilmTile& film, const std::vector<frame::FilmTile>& bl
 void add_planes(const std::string& name, const frame::FilmTile& film, std::vector<Layer>& layers) {
     layers.push_back(integers(name, "count", film.rect, film.counts));
     for (const frame::ChannelInfo& entry : frame::channel_table()) {
-        if (!film.channels.contains(entry.channel)) continue;
-        Layer layer{name + "." + std::string(entry.name),
-                    {},
-                    frame::Image(film.rect.width, film.rect.height, entry.plane_count())};
-        for (std::uint32_t plane = 0; plane < entry.plane_count(); ++plane) {
-            layer.components.push_back("p" + std::to_string(plane));
-            const auto values = film.plane(film.channels.first_plane(entry.channel) + plane);
-            for (std::size_t i = 0; i < values.size(); ++i)
-                std::memcpy(&layer.image.values[i * entry.plane_count() + plane], &values[i], sizeof(float));
-        }
-        layers.push_back(std::move(layer));
+        if (film.channels.contains(entry.channel))
+            layers.push_back(plane_layer(name + "." + std::string(entry.name), film, entry));
     }
 }
 
@@ -123,6 +114,18 @@ frame::FilmTile cut(const PixelBlocks& slot, const Rect& window, const Rect& til
 }
 
 }  // namespace
+
+Layer plane_layer(const std::string& name, const frame::FilmTile& film, const frame::ChannelInfo& entry) {
+    const std::uint32_t count = entry.plane_count(), first = film.channels.first_plane(entry.channel);
+    Layer layer{name, {}, frame::Image(film.rect.width, film.rect.height, count)};
+    for (std::uint32_t plane = 0; plane < count; ++plane) {
+        layer.components.push_back("p" + std::to_string(plane));
+        const auto values = film.plane(first + plane);
+        for (std::size_t i = 0; i < values.size(); ++i)
+            std::memcpy(&layer.image.values[i * count + plane], &values[i], sizeof(float));
+    }
+    return layer;
+}
 
 std::vector<Layer> state_layers(const frame::FilmTile& film, const frame::FilmState& state) {
     std::vector<Layer> layers;

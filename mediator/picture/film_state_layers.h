@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "mediator/frame/film_state.h"
@@ -13,6 +14,9 @@ struct PixelBlocks {
     frame::FilmTile film;  // of the whole window
     std::vector<std::uint32_t> first, size;
 };
+
+// The raw planes of a channel, in the order of the film, as layer `name` with components p0, p1, ...
+Layer plane_layer(const std::string& name, const frame::FilmTile& film, const frame::ChannelInfo& entry);
 
 // The blocks of a film as layers blocks.K.*: first, size, count and the planes of all channels. A film whose pixels have one
 // block each needs no planes, since they are its own. Layer `wanted` is 1 where the current step has samples left.

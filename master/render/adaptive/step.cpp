@@ -188,6 +188,14 @@ class Chooser {
 
 }  // namespace
 
+AdaptiveSettings settings_of_mean(std::uint64_t mean, std::size_t pixels, std::uint32_t step, bool uniform) {
+    constexpr std::uint64_t MostOfAPixel = 64;
+    if (uniform) return {.max_samples = mean, .step = step, .uniform = true};
+    return {.samples = mean * pixels,
+            .max_samples = std::min(session::MaxSamplesPerPixel, MostOfAPixel * mean),
+            .step = step};
+}
+
 Step next_step(const frame::FilmTile& film, std::span<const std::uint8_t> doublings,
                std::span<const Rect> tiles, const AdaptiveSettings& settings, tbb::task_arena* arena) {
     Chooser chooser(film, doublings, settings, arena);

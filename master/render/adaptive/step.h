@@ -21,6 +21,9 @@ struct AdaptiveSettings {
     bool uniform = false;           // all pixels are doubled
 };
 
+// Of a picture that is shown while it is rendered: `mean` samples of a pixel, at most 64 times as many of one.
+AdaptiveSettings settings_of_mean(std::uint64_t mean, std::size_t pixels, std::uint32_t step, bool uniform);
+
 // What an adaptive picture needs next. A pure function of the film, so that neither nodes nor the order of arrival matter.
 struct Step {
     double noise = 0.0;                  // of the picture so far
