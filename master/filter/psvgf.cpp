@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -20,7 +22,11 @@ using namespace svgf;
 enum Parameters : std::size_t {
     Rest,
     Mode,
+    PairDeviation,
+    BlurVariance,
     SigmaL,
+    SigmaLHistory,
+    SigmaLYoung,
     EpsL,
     SigmaN,
     SigmaD,
@@ -38,7 +44,7 @@ enum Parameters : std::size_t {
     TaaRatio,
     ConvergenceSwitch,
 };
-constexpr double Filtered = 1.0, On = 0.0;
+constexpr double Filtered = 1.0, On = 0.0, ByAge = 0.0, Smaller = 2.0, Blurred = 1.0;
 constexpr float NegligibleWeight = 1e-3f;  // of the history in the picture: below it the history is dropped
 
 const frame::ChannelSet Needed{Channel::Radiance,   Channel::LowVariance, Channel::HighVariance,
@@ -92,7 +98,7 @@ class Psvgf final : public Filter {
         }
         if (pending_.film_restarted) begin_film();
         if (!rest_filtered) signals_[1].forget();
-        const Settings settings = settings_of(values);
+        Settings settings = settings_of(values);
         known_ = false;  // until the run is complete: a stopped run leaves no valid state
 
         const auto signals = std::span(signals_).first(rest_filtered ? 2 : 1);
@@ -108,6 +114,7 @@ class Psvgf final : public Filter {
                             layers_.has_history();
         }
         if (history && !blend_histories(signals, settings, report, context)) return false;
+        adapt(values, history, settings);
         const bool feedback = history && settings.feedback > 0.0f && mean_age() >= 1.0;
         for (Signal& signal : signals) {
             if (!signal.filter(now_, settings, feedback, report, context)) return false;
@@ -159,7 +166,8 @@ class Psvgf final : public Filter {
                           .steep = value(Steep),
                           .sigma_l = value(SigmaL),
                           .eps_l = value(EpsL),
-                          .deviation = static_cast<Deviation>(static_cast<int>(values[Mode]))};
+                          .deviation = static_cast<Deviation>(static_cast<int>(values[Mode])),
+                          .pair = values[PairDeviation] == Smaller ? Pair::Smaller : Pair::Larger};
         settings.accumulation.r0 = value(R0);
         settings.accumulation.age_scale = changes_.lights_or_materials ? value(LightHistory) : 1.0f;
         settings.accumulation.z0 =
@@ -167,9 +175,27 @@ class Psvgf final : public Filter {
         settings.levels = static_cast<std::uint32_t>(values[Levels]);
         settings.order = static_cast<LevelOrder>(static_cast<int>(values[Order]));
         settings.kernel = static_cast<WaveletKernel>(static_cast<int>(values[Kernel]));
+        settings.blurs_variance = values[BlurVariance] == Blurred;
         settings.young = value(Young);
         settings.feedback = value(Feedback);
         return settings;
+    }
+
+    // To how much is known of the variances, see Pair.
+    void adapt(const Values& values, bool history, Settings& settings) {
+        if (is_young(settings.young)) {
+            if (values[PairDeviation] == ByAge) settings.stops.pair = Pair::Smaller;
+            if (values[BlurVariance] == ByAge) settings.blurs_variance = true;
+            settings.stops.sigma_l = static_cast<float>(values[SigmaLYoung]);
+        } else {
+            // As the best width of a kernel falls with the samples of a density. Narrower than the least, it would leave noise
+            // in converging pictures.
+            constexpr double Least = 0.63;
+            const double alone =
+                values[SigmaL] * std::max(Least, std::pow(4.0 / std::max(mean_age(), 4.0), 0.2));
+            const double own = history ? mean_own_weight() : 1.0;
+            settings.stops.sigma_l = static_cast<float>(own * alone + (1.0 - own) * values[SigmaLHistory]);
+        }
     }
 
     static void copy_colors(const Inputs& inputs, Planes& picture) {
@@ -202,6 +228,24 @@ class Psvgf final : public Filter {
         double sum = 0.0;
         for (const float age : ages) sum += age;
         return sum / static_cast<double>(ages.size());
+    }
+
+    // Of the film in the history, after the blend.
+    double mean_own_weight() const {
+        const PaddedPlanes& color = signals_[0].now().color;
+        double sum = 0.0;
+        for (std::uint32_t y = 0; y < height_; ++y) {
+            const float* own = color.row(OwnWeightComponent, y);
+            sum = std::accumulate(own, own + width_, sum);
+        }
+        return sum / (double(width_) * height_);
+    }
+
+    // Whether most pixels are.
+    bool is_young(float limit) {
+        const auto ages = signals_[0].now().moments.plane(Age);
+        const auto young = std::ranges::count_if(ages, [limit](float age) { return age < limit; });
+        return 2 * young > static_cast<std::ptrdiff_t>(ages.size());
     }
 
     // Of the picture: the least of the signals', so that noise is not underestimated.
@@ -262,65 +306,60 @@ class Psvgf final : public Filter {
     Planes shown_, shown_before_, smoothed_, newness_;
 };
 
+Parameter number(std::string_view name, std::string_view unit, std::string_view help, double usual,
+                 double least, double most) {
+    return {name, unit, help, usual, least, most, {}};
+}
+// The first value is the usual one.
+Parameter choice(std::string_view name, std::string_view help, std::vector<std::string_view> values) {
+    return {name, "", help, 0.0, 0.0, double(values.size() - 1), std::move(values)};
+}
+
+// In the order of Parameters.
 std::vector<Parameter> psvgf_parameters() {
     return {
-        {"rest", "", "light of all other lobes", 0, 0, 1, {"unfiltered", "filtered"}},
-        {"mode",
-         "",
-         "what a luminance difference is measured in (E-D11): deviation of the mean, variance, "
-         "deviation "
-         "of one sample",
-         0,
-         0,
-         2,
-         {"age", "dundr", "svgf"}},
-        {"sigma_l", "deviations", "luminance difference that stops the filter (E-D11)", 4.0, 0.0, 1e3, {}},
-        {"eps_l",
-         "of the luminance",
-         "luminance difference that is always ignored (E-D11)",
-         0.01,
-         0.0,
-         10.0,
-         {}},
-        {"sigma_n", "", "exponent of the normals' cosine (E-D9)", 64.0, 0.0, 1e4, {}},
-        {"sigma_d", "slopes", "depth difference on one surface (E-D10)", 1.0, 0.0, 1e3, {}},
-        {"eps_d", "of the depth", "depth difference that is always ignored (E-D10)", 0.005, 0.0, 1.0, {}},
-        {"steep", "of the depth per px", "slope above which depth is ignored", 0.2, 0.0, 1e6, {}},
-        {"levels", "", "levels of the wavelet transform", 6, 0, MaxLevels, {}},
-        {"order", "", "order of the levels", 0, 0, 2, {"first_then_coarse", "fine", "coarse"}},
-        {"kernel", "", "taps of a level; 5x5 uses at most 6 levels", 0, 0, 1, {"3x3", "5x5"}},
-        {"r0", "", "minimum weight of a new sample in the history (E-D3)", 0.1, 0.0, 0.999, {}},
-        {"light_history",
-         "",
-         "fraction of its age that history keeps when light changes",
-         0.25,
-         0.0,
-         1.0,
-         {}},
-        {"light_test",
-         "deviations",
-         "difference above which history is distrusted after an edit; 0: never",
-         3.0,
-         0.0,
-         1e3,
-         {}},
-        {"min_history",
-         "samples",
-         "below this count the variance is estimated from the neighbourhood",
-         4.0,
-         2.0,
-         64.0,
-         {}},
-        {"feedback",
-         "samples",
-         "up to this count the first level is fed back into the history; 0: never",
-         8.0,
-         0.0,
-         1e6,
-         {}},
-        {"taa", "", "temporal antialiasing where history is used", 0, 0, 1, {"on", "off"}},
-        {"taa_ratio", "", "minimum weight of the new picture in it (E-D14)", 0.1, 0.0, 1.0, {}},
-        {"blend", "", "blend back to the samples as they converge", 0, 0, 1, {"on", "off"}}};
+        choice("rest", "light of all other lobes", {"unfiltered", "filtered"}),
+        choice("mode",
+               "what a luminance difference is measured in (E-D11): deviation of the mean, variance, "
+               "deviation of "
+               "one sample",
+               {"age", "dundr", "svgf"}),
+        choice("pair",
+               "of two pixels, the one whose deviation a luminance difference is measured in (E-D11: "
+               "smaller); by_age: "
+               "smaller below min_history",
+               {"by_age", "larger", "smaller"}),
+        choice("blur", "blur of the variance with 3x3 pixels (E-D7: on); by_age: below min_history",
+               {"by_age", "on", "off"}),
+        number("sigma_l", "deviations",
+               "luminance difference that stops the filter with 4 samples (E-D11; Dundr: 4); falls with "
+               "their fifth root to 0.63 of it",
+               1.75, 0.0, 1e3),
+        number("history_sigma_l", "deviations", "the same of history alone", 0.95, 0.0, 1e3),
+        number("young_sigma_l", "deviations", "the same below min_history", 4.0, 0.0, 1e3),
+        number("eps_l", "of the luminance", "luminance difference that is always ignored (E-D11)", 0.01, 0.0,
+               10.0),
+        number("sigma_n", "", "exponent of the normals' cosine (E-D9)", 64.0, 0.0, 1e4),
+        number("sigma_d", "slopes", "depth difference on one surface (E-D10)", 1.0, 0.0, 1e3),
+        number("eps_d", "of the depth", "depth difference that is always ignored (E-D10)", 0.005, 0.0, 1.0),
+        number("steep", "of the depth per px", "slope above which depth is ignored", 0.2, 0.0, 1e6),
+        number("levels", "", "levels of the wavelet transform", 6, 0, MaxLevels),
+        choice("order",
+               "order of the levels; both_ends: 0 5 4 3 2 1 0, first_then_coarse (Dundr): 0 5 4 3 2 1",
+               {"both_ends", "first_then_coarse", "fine", "coarse"}),
+        choice("kernel", "taps of a level; 5x5 uses at most 6 levels", {"3x3", "5x5"}),
+        number("r0", "", "minimum weight of a new sample in the history (E-D3)", 0.1, 0.0, 0.999),
+        number("light_history", "", "fraction of its age that history keeps when light changes", 0.25, 0.0,
+               1.0),
+        number("light_test", "deviations",
+               "difference above which history is distrusted after an edit; 0: never", 3.0, 0.0, 1e3),
+        number("min_history", "samples", "below this count the variance is estimated from the neighbourhood",
+               4.0, 2.0, 64.0),
+        number("feedback", "samples",
+               "up to this count the first level is fed back into the history; 0: never", 8.0, 0.0, 1e6),
+        choice("taa", "temporal antialiasing where history is used", {"on", "off"}),
+        number("taa_ratio", "", "minimum weight of the new picture in it (E-D14)", 0.1, 0.0, 1.0),
+        choice("blend", "blend back to the samples as they converge", {"on", "off"})};
 }
 
 }  // namespace

@@ -73,7 +73,8 @@ std::array<double, SignalComponents> expected_at(const Wide& wide, const EdgeSto
                     wide.guides.ids[std::size_t(v * width + u)]) {
                     continue;
                 }
-                float dot = 0.0f, depth = 0.0f, light = 0.0f;
+                const bool larger = stops.pair == Pair::Larger;  // deviation
+                float dot = 0.0f, depth = 0.0f, light = larger ? 1e30f : 0.0f;
                 for (std::uint32_t c = 0; c < 3; ++c) {
                     dot += at(wide.guides.normal, c, x, y) * at(wide.guides.normal, c, u, v);
                 }
@@ -84,8 +85,9 @@ std::array<double, SignalComponents> expected_at(const Wide& wide, const EdgeSto
                     const bool steep = std::max(std::fabs(right), std::fabs(down)) > stops.steep * inverse;
                     depth = std::max(depth, steep ? 0.0f : depth_scale(inverse, change, stops));
                     const float variance = wide.picture.row(3, std::uint32_t(j))[i];
-                    light = std::max(
-                        light, luminance_scale(light_at(wide.picture, i, j), std::sqrt(variance), stops));
+                    const float own =
+                        luminance_scale(light_at(wide.picture, i, j), std::sqrt(variance), stops);
+                    light = larger ? std::min(light, own) : std::max(light, own);
                 }
                 const double apart =
                     double(normal_distance(dot, stops.sigma_n)) +
@@ -107,10 +109,12 @@ std::array<double, SignalComponents> expected_at(const Wide& wide, const EdgeSto
 }
 
 TEST(Wavelet5x5, FollowsItsFormula) {
-    EdgeStops stops;
-    stops.sigma_l = 0.5f;
-    for (const auto& [width, height] :
-         {std::pair{37u, 130u}, std::pair{5u, 3u}, std::pair{1u, 70u}, std::pair{70u, 1u}}) {
+    for (const auto& [width, height, pair] :
+         {std::tuple{37u, 130u, Pair::Larger}, std::tuple{37u, 130u, Pair::Smaller},
+          std::tuple{5u, 3u, Pair::Larger}, std::tuple{1u, 70u, Pair::Larger},
+          std::tuple{70u, 1u, Pair::Smaller}}) {
+        EdgeStops stops{.pair = pair};
+        stops.sigma_l = 0.5f;
         const Wide wide(width, height);
         for (std::uint32_t level = 0; level < MaxLevels5x5; ++level) {
             const PaddedPlanes out = wide.filtered(level, stops);

@@ -298,15 +298,67 @@ TEST(Wavelet, CoarseLevelsFirstRepeatNoEdges) {
     EXPECT_LT(dundr, 0.2f * increasing);
 }
 
+std::vector<std::uint32_t> ordered_levels(std::uint32_t count, LevelOrder order) {
+    std::vector<std::uint32_t> levels;
+    for (std::uint32_t pass = 0; pass < pass_count(count, order); ++pass)
+        levels.push_back(level_of(pass, count, order));
+    return levels;
+}
+
 TEST(Wavelet, LevelsOfEachOrder) {
-    const auto levels = [](LevelOrder order) {
-        std::vector<std::uint32_t> all;
-        for (std::uint32_t pass = 0; pass < 6; ++pass) all.push_back(level_of(pass, 6, order));
-        return all;
+    using Levels = std::vector<std::uint32_t>;
+    EXPECT_EQ(ordered_levels(6, LevelOrder::BothEnds), (Levels{0, 5, 4, 3, 2, 1, 0}));
+    EXPECT_EQ(ordered_levels(6, LevelOrder::FirstThenCoarse), DundrOrder);
+    EXPECT_EQ(ordered_levels(6, LevelOrder::Fine), (Levels{0, 1, 2, 3, 4, 5}));
+    EXPECT_EQ(ordered_levels(6, LevelOrder::Coarse), (Levels{5, 4, 3, 2, 1, 0}));
+    for (const LevelOrder order : {LevelOrder::BothEnds, LevelOrder::FirstThenCoarse}) {
+        EXPECT_EQ(ordered_levels(0, order), Levels{});
+        EXPECT_EQ(ordered_levels(1, order), Levels{0});
+    }
+}
+
+// A pixel that has found rare light, on a surface where no other has: their variance is 0.
+PaddedPlanes spread_find(LevelOrder order, Pair pair) {
+    const auto is_find = [](auto x, auto y) { return x == 50 && y == 50; };
+    return transform(flat(101, 101), {.sigma_d = 1e9f, .pair = pair}, ordered_levels(6, order),
+                     picture_of(
+                         101, 101, [&](auto x, auto y) { return is_find(x, y) ? 100.0f : 1.0f; },
+                         [&](auto x, auto y) { return is_find(x, y) ? 9900.0f : 0.0f; }));
+}
+
+float brightest(const PaddedPlanes& picture) {
+    float most = 0.0f;
+    for (std::uint32_t y = 0; y < picture.height(); ++y)
+        most = std::max(most, *std::max_element(picture.row(0, y), picture.row(0, y) + picture.width()));
+    return most;
+}
+
+TEST(Wavelet, SpreadsALoneBrightFindAndKeepsItsLight) {
+    const PaddedPlanes spread = spread_find(LevelOrder::BothEnds, Pair::Larger);
+    EXPECT_LT(brightest(spread), 1.2f);
+    EXPECT_GT(brightest(spread_find(LevelOrder::BothEnds, Pair::Smaller)), 50.0f);
+    double light = 0.0;
+    for (std::uint32_t y = 0; y < 101; ++y) {
+        for (std::uint32_t x = 0; x < 101; ++x) light += spread.row(0, y)[x];
+    }
+    EXPECT_NEAR(light / (101.0 * 101.0 + 99.0), 1.0, 0.01);
+}
+
+TEST(Wavelet, LeavesNoDotsTwoPixelsApart) {
+    const auto dots = [](LevelOrder order) {  // light of even rows and columns over that of odd ones
+        const PaddedPlanes spread = spread_find(order, Pair::Larger);
+        double even = 0.0, odd = 0.0;
+        for (std::uint32_t y = 40; y < 60; ++y) {
+            for (std::uint32_t x = 40; x < 60; ++x) {
+                const double found = double(spread.row(0, y)[x]) - 1.0;
+                if (x % 2 == 0 && y % 2 == 0) even += found;
+                if (x % 2 == 1 && y % 2 == 1) odd += found;
+            }
+        }
+        return even / odd;
     };
-    EXPECT_EQ(levels(LevelOrder::FirstThenCoarse), DundrOrder);
-    EXPECT_EQ(levels(LevelOrder::Fine), (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5}));
-    EXPECT_EQ(levels(LevelOrder::Coarse), (std::vector<std::uint32_t>{5, 4, 3, 2, 1, 0}));
+    EXPECT_NEAR(dots(LevelOrder::BothEnds), 1.0, 0.25);
+    EXPECT_GT(dots(LevelOrder::FirstThenCoarse), 1.5);
 }
 
 TEST(Variance, IsSpatialForYoungPixels) {
@@ -326,7 +378,7 @@ TEST(Variance, IsSpatialForYoungPixels) {
     }
     SpatialVariance variance;
     RunContext context{arena(), {}};
-    ASSERT_TRUE(variance.run(guides, {}, 4.0f, state, context));
+    ASSERT_TRUE(variance.run(guides, {}, 4.0f, false, state, context));
     double sum = 0.0;
     for (std::uint32_t y = 4; y < 60; ++y) {
         for (std::uint32_t x = 4; x < 28; ++x) sum += state.color.row(3, y)[x];
@@ -335,8 +387,14 @@ TEST(Variance, IsSpatialForYoungPixels) {
     EXPECT_NEAR(state.color.row(3, 30)[40], 0.0f, 1e-2f);  // constant; the other side has no weight
     std::ranges::fill(state.moments.plane(Age), 16.0f);
     std::ranges::fill(state.moments.plane(SampleVariance), 3.0f);
-    ASSERT_TRUE(variance.run(guides, {}, 4.0f, state, context));
+    ASSERT_TRUE(variance.run(guides, {}, 4.0f, false, state, context));
     EXPECT_NEAR(state.color.row(3, 30)[10], 3.0f / 15.0f, 1e-5f);  // the pixel's own
+    state.moments.row(SampleVariance, 30)[10] = 15.0f;
+    for (const bool blurs : {false, true}) {  // (1 2 1)x(1 2 1)/16
+        ASSERT_TRUE(variance.run(guides, {}, 4.0f, blurs, state, context));
+        EXPECT_NEAR(state.color.row(3, 30)[10], blurs ? (4.0f + 12.0f * 0.2f) / 16.0f : 1.0f, 1e-5f);
+        EXPECT_NEAR(state.color.row(3, 31)[11], blurs ? (1.0f + 15.0f * 0.2f) / 16.0f : 0.2f, 1e-5f);
+    }
 }
 
 TEST(Holes, AreFilledFromNeighbours) {  // DT21

@@ -24,14 +24,15 @@ struct End {
     const std::uint32_t* ids;
 };
 
+template <Pair Scale>
 void pair_weights(const End& a, const End& b, std::size_t count, float kernel, float sigma_n,
                   float* __restrict weights) {
     for (std::size_t x = 0; x < count; ++x) {
         const float dot = a.nx[x] * b.nx[x] + a.ny[x] * b.ny[x] + a.nz[x] * b.nz[x];
         const float depth =
             std::fabs(a.inverse_depth[x] - b.inverse_depth[x]) * std::max(a.depth_scale[x], b.depth_scale[x]);
-        const float light =
-            std::fabs(a.luminance[x] - b.luminance[x]) * std::max(a.luminance_scale[x], b.luminance_scale[x]);
+        const float light = std::fabs(a.luminance[x] - b.luminance[x]) *
+                            luminance_scale_of<Scale>(a.luminance_scale[x], b.luminance_scale[x]);
         const float w = kernel * exp_negative(-(normal_distance(dot, sigma_n) + depth + light));
         weights[x] = (a.ids[x] == b.ids[x]) & (dot > 0.0f) ? w : 0.0f;
     }
@@ -104,14 +105,19 @@ struct AtrousWavelet::Scratch {
     }
 };
 
-std::uint32_t level_of(std::uint32_t pass, std::uint32_t count, LevelOrder order) {
+std::uint32_t pass_count(std::uint32_t levels, LevelOrder order) {
+    return levels + (order == LevelOrder::BothEnds && levels > 1 ? 1 : 0);
+}
+
+std::uint32_t level_of(std::uint32_t pass, std::uint32_t levels, LevelOrder order) {
     switch (order) {
+        case LevelOrder::BothEnds:
         case LevelOrder::FirstThenCoarse:
-            return pass == 0 ? 0 : count - pass;
+            return pass == 0 ? 0 : (levels - pass) % levels;
         case LevelOrder::Fine:
             return pass;
         case LevelOrder::Coarse:
-            return count - 1 - pass;
+            return levels - 1 - pass;
     }
     return pass;
 }
@@ -188,9 +194,11 @@ bool AtrousWavelet::run(const Guides& guides, const EdgeStops& stops, std::uint3
             const std::uint32_t shift = direction == Down ? 0 : step;
             if (shift >= width) return;
             const float kernel = direction == Right || direction == Down ? Side : Corner;
-            pair_weights(end_of(guides, here, direction, y, left ? shift : 0),
-                         end_of(guides, there, direction, other, left ? 0 : shift), width - shift, kernel,
-                         stops.sigma_n, weights + (left ? shift : 0));
+            const auto weights_of =
+                stops.pair == Pair::Larger ? pair_weights<Pair::Larger> : pair_weights<Pair::Smaller>;
+            weights_of(end_of(guides, here, direction, y, left ? shift : 0),
+                       end_of(guides, there, direction, other, left ? 0 : shift), width - shift, kernel,
+                       stops.sigma_n, weights + (left ? shift : 0));
         };
         const auto weigh_below = [&](std::uint32_t y) {
             for (const Direction direction : {Down, DownRight, DownLeft}) {

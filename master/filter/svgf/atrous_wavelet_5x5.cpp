@@ -28,14 +28,15 @@ struct End5x5 {
 
 // As in AtrousWavelet. Shared through a header, inlined or not, it makes that one a quarter slower on tilted surfaces
 // (PsvgfSpeed.HardlyDependsOnSceneAndCamera).
+template <Pair Scale>
 void pair_weights_5x5(const End5x5& a, const End5x5& b, std::size_t count, float kernel, float sigma_n,
                       float* __restrict weights) {
     for (std::size_t x = 0; x < count; ++x) {
         const float dot = a.nx[x] * b.nx[x] + a.ny[x] * b.ny[x] + a.nz[x] * b.nz[x];
         const float depth =
             std::fabs(a.inverse_depth[x] - b.inverse_depth[x]) * std::max(a.depth_scale[x], b.depth_scale[x]);
-        const float light =
-            std::fabs(a.luminance[x] - b.luminance[x]) * std::max(a.luminance_scale[x], b.luminance_scale[x]);
+        const float light = std::fabs(a.luminance[x] - b.luminance[x]) *
+                            luminance_scale_of<Scale>(a.luminance_scale[x], b.luminance_scale[x]);
         const float w = kernel * exp_negative(-(normal_distance(dot, sigma_n) + depth + light));
         weights[x] = (a.ids[x] == b.ids[x]) & (dot > 0.0f) ? w : 0.0f;
     }
@@ -142,9 +143,11 @@ class Level5x5 {
         const std::int64_t count = std::int64_t{from_.width()} - std::abs(shift);
         if (!has_row(other) || count <= 0) return;
         const std::int64_t start = std::max<std::int64_t>(0, -shift);
-        pair_weights_5x5(end_at(terms_of(rows, y), tap, start),
-                         end_at(terms_of(rows, other), tap, start + shift), static_cast<std::size_t>(count),
-                         Taps[tap].kernel(), stops_.sigma_n, rows.weights[slot(y)][tap] + start);
+        const auto weights_of =
+            stops_.pair == Pair::Larger ? pair_weights_5x5<Pair::Larger> : pair_weights_5x5<Pair::Smaller>;
+        weights_of(end_at(terms_of(rows, y), tap, start), end_at(terms_of(rows, other), tap, start + shift),
+                   static_cast<std::size_t>(count), Taps[tap].kernel(), stops_.sigma_n,
+                   rows.weights[slot(y)][tap] + start);
     }
 
     void add_tap(Rows5x5& rows, const float* weights, std::int64_t y, std::int64_t shift) const {

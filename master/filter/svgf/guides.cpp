@@ -1,5 +1,7 @@
 #include "master/filter/svgf/guides.h"
 
+#include "master/filter/svgf/demodulate.h"
+
 namespace tessera::filter::svgf {
 
 namespace {
@@ -8,6 +10,10 @@ namespace {
 float smaller(float a, float b) {
     return std::fabs(a) < std::fabs(b) ? a : b;
 }
+
+// Where a surface reflects nothing, no sample says how much light falls on it: such pixels are a surface of their own. Else
+// they would darken their neighbours, whose light would be lost on them.
+constexpr std::uint32_t BlackSurface = 0x80000000u;
 
 }  // namespace
 
@@ -18,6 +24,7 @@ bool prepare_guides(const Inputs& inputs, Guides& guides, RunContext& context) {
     guides.camera = inputs.camera;
     const Planes& normals = inputs.mean(frame::Channel::Normal);
     const Planes& depths = inputs.mean(frame::Channel::Depth);
+    const Planes& albedos = inputs.mean(frame::Channel::Albedo);
     return for_rows(context, inputs.height, [&](std::uint32_t y) {
         const std::size_t width = inputs.width;
         const float *nx = normals.row(0, y), *ny = normals.row(1, y), *nz = normals.row(2, y);
@@ -34,9 +41,14 @@ bool prepare_guides(const Inputs& inputs, Guides& guides, RunContext& context) {
         const float* depth = depths.row(0, y);
         float* __restrict inverse = guides.inverse_depth.row(0, y);
         for (std::size_t x = 0; x < width; ++x) inverse[x] = depth[x] > Tiny ? 1.0f / depth[x] : 0.0f;
-        const auto ids = inputs.object_ids.begin() + static_cast<std::ptrdiff_t>(y * width);
-        std::copy(ids, ids + static_cast<std::ptrdiff_t>(width),
-                  guides.ids.begin() + static_cast<std::ptrdiff_t>(y * width));
+        const float *red = albedos.row(0, y), *green = albedos.row(1, y), *blue = albedos.row(2, y);
+        const float* counts = inputs.counts.row(0, y);
+        const std::uint32_t* ids = inputs.object_ids.data() + std::size_t{y} * width;
+        std::uint32_t* __restrict surfaces = guides.ids.data() + std::size_t{y} * width;
+        for (std::size_t x = 0; x < width; ++x) {
+            const bool is_black = std::max(red[x], std::max(green[x], blue[x])) <= LeastAlbedo;
+            surfaces[x] = is_black & (counts[x] > 0.0f) ? ids[x] ^ BlackSurface : ids[x];
+        }
     });
 }
 

@@ -55,16 +55,18 @@ bool Signal::filter(const Guides& guides, const Settings& settings, bool feedbac
                     RunContext& context) {
     {
         PassTimer timer(report, "variance", 4.0 * 5);
-        if (!variance_.run(guides, settings.stops, settings.young, now_, context)) return false;
+        if (!variance_.run(guides, settings.stops, settings.young, settings.blurs_variance, now_, context))
+            return false;
     }
     filtered_ = &now_.color;
     const bool wide = settings.kernel == WaveletKernel::Size5x5;
     const std::uint32_t levels = wide ? std::min(settings.levels, MaxLevels5x5) : settings.levels;
-    for (std::uint32_t pass = 0; pass < levels; ++pass) {
+    for (std::uint32_t pass = 0; pass < pass_count(levels, settings.order); ++pass) {
         const std::uint32_t level = level_of(pass, levels, settings.order);
         PaddedPlanes& to = levels_[pass % 2];
         {
-            PassTimer timer(report, LevelNames[level], AtrousWavelet::BytesPerPixel);
+            PassTimer timer(report, pass == levels ? "wavelet 0 again" : LevelNames[level],
+                            AtrousWavelet::BytesPerPixel);
             if (!(wide ? wavelet_5x5_.run(guides, settings.stops, level, *filtered_, to, context)
                        : wavelet_.run(guides, settings.stops, level, *filtered_, to, context))) {
                 return false;
@@ -89,7 +91,8 @@ void Signal::self_weights(std::span<float> weights) const {
                     *fraction = now_.color.row(OwnWeightComponent, y);
         float* __restrict to = weights.data() + std::size_t{y} * width;
         for (std::uint32_t x = 0; x < width; ++x) {
-            const float kept = fraction[x] * left[x] / std::max(variance[x], Tiny);
+            const float part = variance[x] > 0.0f ? left[x] / variance[x] : 1.0f;  // 0: no light
+            const float kept = fraction[x] * part;
             to[x] = std::min(std::max(2.0f * own[x] - kept, 0.0f), 1.0f);
         }
     }

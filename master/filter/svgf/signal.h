@@ -14,11 +14,12 @@ enum class WaveletKernel : std::uint8_t { Size3x3, Size5x5 };
 
 struct Settings {
     EdgeStops stops;
+    bool blurs_variance = false;  // E-D7
     Accumulation accumulation;
     SurfaceTests tests;
     std::uint32_t levels = 6;  // with 5x5 taps at most MaxLevels5x5 are used
     WaveletKernel kernel = WaveletKernel::Size3x3;
-    LevelOrder order = LevelOrder::FirstThenCoarse;
+    LevelOrder order = LevelOrder::BothEnds;
     float young = 4.0f;     // below this count the variance is estimated from the neighbourhood
     float feedback = 8.0f;  // up to this count the first level is fed back into the history; 0: never
 };

@@ -8,6 +8,8 @@ namespace {
 
 enum Sum : std::uint32_t { Known, Square, Weight, RowKnown, RowMean, RowSquare, SumCount };
 
+// Deviation, relative to the light: below it are differences of rounding, not of samples.
+constexpr float Rounding = 0x1p-21f;
 constexpr std::int64_t Radius = 3;
 // exp(-d^2 / (2 * 1.5^2))
 constexpr std::array<float, 4> Gaussian{1.0f, 0.80073740f, 0.41111229f, 0.13533528f};
@@ -51,7 +53,7 @@ void add_weighted(const float* weights, const float* w, const float* first, cons
 
 }  // namespace
 
-bool SpatialVariance::run(const Guides& guides, const EdgeStops& stops, float young, State& state,
+bool SpatialVariance::run(const Guides& guides, const EdgeStops& stops, float young, bool blurs, State& state,
                           RunContext& context) {
     const std::uint32_t width = state.moments.width(), height = state.moments.height();
     if (raw_.width() != width || raw_.height() != height) {
@@ -60,13 +62,15 @@ bool SpatialVariance::run(const Guides& guides, const EdgeStops& stops, float yo
     }
     const bool of_mean = stops.deviation == Deviation::Mean;
     if (!for_rows(context, height, [&](std::uint32_t y) {
+            const float* mean = state.moments.row(MeanLuminance, y);
             const float* variance = state.moments.row(SampleVariance, y);
             const float* age = state.moments.row(Age, y);
             float* __restrict raw = raw_.row(0, y);
             std::uint32_t found = 0;
             for (std::uint32_t x = 0; x < width; ++x) {
                 const float unbiased = variance[x] / std::max(age[x] - 1.0f, 0.5f);
-                raw[x] = of_mean ? unbiased : unbiased * age[x];
+                const float rounding = Rounding * mean[x];
+                raw[x] = std::max(of_mean ? unbiased : unbiased * age[x], rounding * rounding);
                 found |= age[x] < young ? 1u : 0u;
             }
             young_rows_[y] = static_cast<std::uint8_t>(found);
@@ -80,6 +84,10 @@ bool SpatialVariance::run(const Guides& guides, const EdgeStops& stops, float yo
         const float* above = raw_.row(0, y > 0 ? y - 1 : y);
         const float* below = raw_.row(0, y + 1 < height ? y + 1 : y);
         float* __restrict out = state.color.row(3, y);
+        if (!blurs) {
+            std::copy_n(here, width, out);
+            return;
+        }
         const auto column = [&](std::size_t x) {
             return 0.25f * above[x] + 0.5f * here[x] + 0.25f * below[x];
         };

@@ -8,11 +8,12 @@ namespace tessera::filter::svgf {
 // The initial variance of the wavelet transform, written to component 3 of the state's colour: of the mean or
 // of one sample (EdgeStops::deviation); from the samples of the pixel, or from its neighbourhood if it has
 // fewer than `young` (E-D16: moments under a Gaussian of 7x7 on the same surface, computed as a row and a
-// column pass); then blurred by (1 2 1)x(1 2 1)/16 (E-D7).
+// column pass); then blurred by (1 2 1)x(1 2 1)/16 (E-D7), if asked for.
 class SpatialVariance {
   public:
     // False: stopped.
-    bool run(const Guides& guides, const EdgeStops& stops, float young, State& state, RunContext& context);
+    bool run(const Guides& guides, const EdgeStops& stops, float young, bool blurs, State& state,
+             RunContext& context);
 
   private:
     bool estimate(const Guides& guides, const EdgeStops& stops, float young, const State& state,
