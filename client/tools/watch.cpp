@@ -8,6 +8,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "client/session.h"
 #include "client/tools/cluster_options.h"
@@ -35,7 +36,7 @@ struct WatchOptions {
     std::string title, name = "watch", view, camera;
     FilterOption filter;
     DisplayTransformOptions display;
-    std::optional<std::string> size, output, time;
+    std::optional<std::string> size, output, noise_map, time;
     std::uint64_t spp = 256;
     std::string adaptive = "on";
     std::uint64_t frames = 0;
@@ -82,6 +83,9 @@ class Watch {
         if (options_.output && !picture_format(*options_.output))
             return report_error(WatchName, cli::ExitUsage,
                                 "-o: the file name must end in .exr, .png or .jpg");
+        if (options_.noise_map && picture_format(*options_.noise_map) != PictureFormat::Png)
+            return report_error(WatchName, cli::ExitUsage,
+                                "--noise-map: '" + *options_.noise_map + "' does not end with .png");
         const auto filter = parse_options(options_.filter);
         if (!filter) return report_error(WatchName, cli::ExitUsage, filter.error().what());
         filter_ = filter->empty() && !is_exr(options_.output) ? LiveFilter : *filter;
@@ -133,7 +137,8 @@ class Watch {
     void open_view() {
         session::ViewRequest request{.name = options_.view,
                                      .stop = {.spp = options_.spp, .uniform = options_.adaptive == "off"},
-                                     .picture = session::PictureEncoding::Planes};
+                                     .picture = session::PictureEncoding::Planes,
+                                     .film = options_.noise_map.has_value()};
         const bool is_shared = !options_.view.empty();
         if (!is_shared) {
             // There is no camera until a client loads a scene.
@@ -153,6 +158,7 @@ class Watch {
                                    static_cast<std::int32_t>(size_.height)};
             request.view.camera = view::pose(*camera, size_.width, size_.height);
             request.view.channels = {frame::Channel::Radiance};
+            if (options_.noise_map) request.view.channels.insert(frame::Channel::BlockVariance);
             request.view.filter = filter_;
         }
         is_shared ? session_->share_view(View, request) : session_->request_view(View, request);
@@ -188,6 +194,8 @@ class Watch {
         if (!display_.transform.exposure) display_.transform.exposure = picture::measured_exposure(image);
         if (options_.output)
             write_picture(*options_.output, image, display_.transform, display_.custom_view());
+        // Of coarse pictures, with one sample a pixel, no noise is known.
+        if (options_.noise_map && frame.scale == 1 && frame.film) write_noise(*frame.film);
         char text[200];
         std::snprintf(text, sizeof text, "frame %llu, version %llu, %ux%u%s, %.4g of %llu samples%s%s",
                       static_cast<unsigned long long>(count),
@@ -205,13 +213,20 @@ class Watch {
         }
     }
 
+    void write_noise(const frame::FilmTile& film) {
+        if (film.channels.contains(frame::Channel::Radiance))
+            return write_noise_map(*options_.noise_map, film);
+        if (!std::exchange(has_no_noise_, true))
+            std::cerr << "tessera watch: no noise map: the samples of this view have no radiance\n";
+    }
+
     Interrupts interrupts_;  // before anything that starts threads
     WatchOptions options_;
     SteadyClock clock_;
     Size size_;
     DisplayChoice display_;
     std::string filter_;
-    bool to_terminal_ = false, camera_wait_logged_ = false;
+    bool to_terminal_ = false, camera_wait_logged_ = false, has_no_noise_ = false;
     std::unique_ptr<client::Session> session_;
 };
 
@@ -246,6 +261,9 @@ Command watch_command(cli::CommandLine& program) {
     options->filter.add_to(line);
     options->display.add_to(line);
     line.option("-o,--output", "write every frame to this picture, .png, .jpg or .exr", options->output);
+    line.option("--noise-map",
+                "also write a PNG of the noise of each pixel, from 0.01 (black) over 0.1 (red) to 1 (white)",
+                options->noise_map);
     line.flag("--once", "exit when the frame is complete", options->once);
     line.option("--frames", "exit after this many frames; 0 = never", options->frames);
     line.option("--time", "exit after this time, as 10s or 5m", options->time);

@@ -2,15 +2,18 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <span>
 #include <thread>
 
 #include "client/import/import.h"
 #include "client/session.h"
 #include "mediator/base/hash.h"
+#include "mediator/picture/png_reader.h"
 #include "mediator/scene/fields.h"
 #include "mediator/view/placed_cameras.h"
 #include "tests/process/real_cluster.h"
@@ -130,6 +133,28 @@ TEST_F(LiveProcess, WatchShowsDenoisedPicturesUnlessAskedNotTo) {
     EXPECT_NE(usual, samples);
     EXPECT_EQ(watched("usual.exr", {}), watched("none.exr", {"--filter", "none"}))
         << "light for other programs";
+}
+
+TEST_F(LiveProcess, WatchWritesANoiseMap) {
+    const std::string file = cluster.folder() / "noise.png";
+    std::vector<std::string> arguments{"watch",  "--master", cluster.endpoint(), "--keys",
+                                       cluster.keys(), "--size", "96x64", "--spp", "64", "--once",
+                                       "-o", cluster.folder() / "now.png", "--noise-map", file};
+    ChildProcess watch(cluster.folder().path(), "watch-noise", "tessera", arguments);
+    ASSERT_EQ(watch.wait(60s).value_or(-1), 0) << watch.err();
+    std::ifstream stream(file, std::ios::binary);
+    const std::string bytes(std::istreambuf_iterator<char>(stream), {});
+    const auto map = picture::read_png(std::as_bytes(std::span(bytes)));
+    ASSERT_TRUE(map) << map.error().what();
+    EXPECT_EQ(map->width, 96u);
+    EXPECT_EQ(map->height, 64u);
+    const auto [least, most] = std::ranges::minmax(map->values);
+    EXPECT_LT(least, most) << "the same noise everywhere";
+
+    arguments.back() = "noise.exr";
+    ChildProcess refused(cluster.folder().path(), "watch-refused", "tessera", arguments);
+    EXPECT_EQ(refused.wait(60s).value_or(-1), 64);
+    EXPECT_NE(refused.err().find("--noise-map: 'noise.exr' does not end with .png"), std::string::npos);
 }
 
 TEST_F(LiveProcess, SamplesMergedBeforeTheCrashAreKept) {
