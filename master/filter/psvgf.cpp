@@ -123,10 +123,7 @@ class Psvgf final : public Filter {
         if (values[ConvergenceSwitch] == On) {
             PassTimer timer(report, "convergence blend",
                             ConvergenceBlend::bytes_per_pixel(out.picture.components()));
-            const bool diffuse_alone = !rest_filtered && knows_diffuse(inputs);
-            const Channel part = diffuse_alone ? Channel::HighVariance : Channel::Radiance;
-            if (!convergence_blend_.apply(inputs, part, self_weights(signals), out.picture, context))
-                return false;
+            if (!blend_with_samples(inputs, signals, out.picture, report, context)) return false;
         }
         const bool shown_fits = shown_before_.pixel_count() == inputs.pixel_count() &&
                                 shown_before_.components() == out.picture.components();
@@ -142,6 +139,48 @@ class Psvgf final : public Filter {
         if (out.wants_maps) write_maps(inputs, out);
         known_ = true;
         return true;
+    }
+
+    bool blend_with_samples(const Inputs& inputs, std::span<Signal> signals, Planes& picture, Report& report,
+                            RunContext& context) {
+        if (!knows_diffuse(inputs)) {
+            return convergence_blend_.apply(inputs, Channel::Radiance, self_weights(signals), picture,
+                                            context);
+        }
+        if (signals.size() == 1) {
+            return convergence_blend_.apply(inputs, Channel::HighVariance, self_weights(signals), picture,
+                                            context);
+        }
+        // Each part for itself: in the noise of both, errors of one are not seen.
+        const Planes& rest = inputs.mean(Channel::LowVariance);
+        if (!layers_.compose(inputs, signals.first(1), rest, picture, report, context) ||
+            !convergence_blend_.apply(inputs, Channel::HighVariance, self_weights(signals.first(1)), picture,
+                                      context))
+            return false;
+        shape(other_part_, inputs, picture.components());
+        copy_colors(inputs, other_part_);
+        add_difference(signals[1].filtered(), rest, other_part_);
+        if (!convergence_blend_.apply(inputs, Channel::LowVariance, self_weights(signals.last(1)),
+                                      other_part_, context))
+            return false;
+        for (std::uint32_t c = 0; c < 3; ++c) {
+            const auto color = inputs.color(c);
+            const auto other = other_part_.plane(c);
+            const auto to = picture.plane(c);
+            for (std::size_t i = 0; i < to.size(); ++i) to[i] += other[i] - color[i];
+        }
+        return true;
+    }
+
+    // `to` += a - b
+    static void add_difference(const PaddedPlanes& a, const Planes& b, Planes& to) {
+        for (std::uint32_t c = 0; c < 3; ++c) {
+            for (std::uint32_t y = 0; y < to.height(); ++y) {
+                const float *from = a.row(c, y), *less = b.row(c, y);
+                float* row = to.row(c, y);
+                for (std::uint32_t x = 0; x < to.width(); ++x) row[x] += from[x] - less[x];
+            }
+        }
     }
 
     bool blend_histories(std::span<Signal> signals, const Settings& settings, Report& report,
@@ -303,7 +342,7 @@ class Psvgf final : public Filter {
     ConvergenceBlend convergence_blend_;
     std::array<std::vector<float>, 2> self_weights_;
     Antialiasing antialiasing_;
-    Planes shown_, shown_before_, smoothed_, newness_;
+    Planes shown_, shown_before_, smoothed_, newness_, other_part_;
 };
 
 Parameter number(std::string_view name, std::string_view unit, std::string_view help, double usual,
@@ -369,7 +408,7 @@ FilterEntry psvgf_entry() {
         {.name = "psvgf",
          .summary = "progressive SVGF: history and edge-stopping wavelets on the diffuse irradiance",
          .source = "Dundr 2",
-         .bytes_per_pixel = 678,
+         .bytes_per_pixel = 694,
          .parameters = psvgf_parameters(),
          .channels = [](const Values&) { return Needed; },
          .consistent = true,

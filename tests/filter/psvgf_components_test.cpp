@@ -77,7 +77,7 @@ TEST(EdgeStops, NormalsOfTheNotes) {  // DT8
 }
 
 TEST(EdgeStops, LightOfTheNotes) {  // DT9
-    const EdgeStops stops{.eps_l = 0.1f, .deviation = Deviation::Variance};
+    const EdgeStops stops{.sigma_l = 4.0f, .eps_l = 0.1f, .deviation = Deviation::Variance};
     EXPECT_NEAR(luminance_scale(1.0f, 0.0f, stops), 10.0f, 1e-4);  // var = 0: exp(-dL / eps)
     EXPECT_NEAR(luminance_scale(1.0f, 0.25f, stops), 1.0f / (4.0f * 0.25f + 0.1f), 1e-5);
 }

@@ -97,6 +97,35 @@ TEST(Psvgf, TheRestIsUnfilteredOrFiltered) {
               0.3 * psvgf_error(all, truth));
 }
 
+// Diffuse light, and another kind of light whose noise is far larger than what the filter blurs.
+Inputs with_noisy_rest(bool has_diffuse) {
+    Inputs inputs = synthetic_inputs(PsvgfWidth, PsvgfHeight, 256, [=](auto x, auto y, auto i) {
+        SyntheticSample s = shadowed_texture(PsvgfWidth, PsvgfHeight, x, y, i, 1);
+        const std::uint64_t key = (std::uint64_t{y} << 16 | x) << 16 | i;
+        const bool is_find = CounterRandom(3, key).uniform() < 1.0 / 64.0;
+        s.low = is_find ? std::array<float, 3>{64.0f, 64.0f, 64.0f} : std::array<float, 3>{};
+        if (!has_diffuse) s.high = s.irradiance = {};
+        return s;
+    });
+    inputs.path_class = view::PathClass::Diffuse;
+    return inputs;
+}
+
+// The blend corrects what is wrong with the diffuse part, although the rest has more noise. (Both parts together were left as
+// wrong as without a blend.)
+TEST(Psvgf, FilteredPartsDoNotHideEachOthersErrors) {
+    const Inputs both = with_noisy_rest(true), rest_alone = with_noisy_rest(false);
+    const Planes truth = shadowed_texture_truth(PsvgfWidth, PsvgfHeight);
+    const auto error_of_diffuse = [&](const std::string& how) {
+        Planes diffuse = run_filter(how, both).picture;
+        const Planes rest = run_filter(how, rest_alone).picture;
+        for (std::size_t i = 0; i < rest.values().size(); ++i) diffuse.values()[i] -= rest.values()[i];
+        return psvgf_error(diffuse, truth);
+    };
+    EXPECT_LT(error_of_diffuse("psvgf:rest=filtered,sigma_l=100"),
+              0.5 * error_of_diffuse("psvgf:rest=filtered,sigma_l=100,blend=off"));
+}
+
 TEST(Psvgf, OtherPathClassesUseTheIrradiance) {
     Inputs inputs = psvgf_shadows(8);
     const Planes diffuse = run_filter("psvgf", inputs).picture;

@@ -137,9 +137,20 @@ TEST_F(LiveProcess, WatchShowsDenoisedPicturesUnlessAskedNotTo) {
 
 TEST_F(LiveProcess, WatchWritesANoiseMap) {
     const std::string file = cluster.folder() / "noise.png";
-    std::vector<std::string> arguments{"watch",  "--master", cluster.endpoint(), "--keys",
-                                       cluster.keys(), "--size", "96x64", "--spp", "64", "--once",
-                                       "-o", cluster.folder() / "now.png", "--noise-map", file};
+    std::vector<std::string> arguments{"watch",
+                                       "--master",
+                                       cluster.endpoint(),
+                                       "--keys",
+                                       cluster.keys(),
+                                       "--size",
+                                       "96x64",
+                                       "--spp",
+                                       "64",
+                                       "--once",
+                                       "-o",
+                                       cluster.folder() / "now.png",
+                                       "--noise-map",
+                                       file};
     ChildProcess watch(cluster.folder().path(), "watch-noise", "tessera", arguments);
     ASSERT_EQ(watch.wait(60s).value_or(-1), 0) << watch.err();
     std::ifstream stream(file, std::ios::binary);

@@ -129,13 +129,18 @@ bool FilmLayers::blend_history(const State& light, Report& report, RunContext& c
 
 bool FilmLayers::compose(const Inputs& inputs, std::span<const Signal> signals, Planes& picture,
                          Report& report, RunContext& context) const {
+    return compose(inputs, signals, *rest_, picture, report, context);
+}
+
+bool FilmLayers::compose(const Inputs& inputs, std::span<const Signal> signals, const Planes& unfiltered,
+                         Planes& picture, Report& report, RunContext& context) const {
     PassTimer timer(report, "compose", 4.0 * 12);
     const PaddedPlanes& light = signals[0].filtered();
     return for_rows(context, inputs.height, [&](std::uint32_t y) {
         const std::size_t width = inputs.width;
         for (std::uint32_t c = 0; c < 3; ++c) {
             const float *a = albedo_->row(c, y), *e = light.row(c, y);
-            const float* rest = signals.size() > 1 ? signals[1].filtered().row(c, y) : rest_->row(c, y);
+            const float* rest = signals.size() > 1 ? signals[1].filtered().row(c, y) : unfiltered.row(c, y);
             float* __restrict to = picture.row(c, y);
             for (std::size_t x = 0; x < width; ++x) to[x] = a[x] * e[x] + rest[x];
         }

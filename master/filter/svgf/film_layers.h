@@ -37,6 +37,9 @@ class FilmLayers {
     // picture = rest + albedo x irradiance.
     bool compose(const Inputs& inputs, std::span<const Signal> signals, Planes& picture, Report& report,
                  RunContext& context) const;
+    // With one signal this is the rest.
+    bool compose(const Inputs& inputs, std::span<const Signal> signals, const Planes& unfiltered,
+                 Planes& picture, Report& report, RunContext& context) const;
 
   private:
     bool fill_holes(const Inputs& inputs, std::span<Signal> signals, Guides& guides, RunContext& context);
