@@ -20,9 +20,8 @@ enum class Deviation : std::uint8_t {
 
 // Whose deviation a luminance difference is measured in. The smaller one (E-D11) keeps a bright find as a speck: pixels that
 // found nothing have no variance. The larger one is within sqrt(2) of the deviation of the difference, and mixes it with them.
-// relMSE over that of the samples, geometric mean of eight scenes at 4, 16 and 64
-// samples, with Dundr's settings and with the present ones (larger, no blur of the variance, both_ends, sigma_l
-// 1.75 with 4 samples and 1.1 with 64):
+// relMSE over that of the samples, geometric mean of eight scenes at 4, 16 and 64 samples, with Dundr's settings and with the
+// present ones (larger, no blur of the variance, both_ends, sigma_l 1.75 with 4 samples and 1.1 with 64):
 //
 //     0.51 0.54 0.44    0.30 0.39 0.40    all pixels
 //     0.51 0.52 0.49    0.41 0.43 0.49    without the worst 0.1 % of them
