@@ -53,6 +53,8 @@ run consistency.json "$bin/tessera" bench consistency --spp 4,16,64,256 --seeds 
     --references "$out/references" --json
 run adaptive_sampling.json "$bin/tessera" bench adaptive --spp 32,64 --noise 0.2 --seeds 3 --reference-spp 8192 \
     --references "$out/references" --json
+run adaptive_error.json "$bin/tessera" bench adaptive --spp "" --noise "" --error 0.03,0.01 --filter fdf --seeds 3 --reference-spp 2048 \
+    --references "$out/references" --json
 run variance.json "$bin/tessera" bench variance --spp 4,16,64 --seeds 12 --json
 run backends.txt "$bin/tessera" bench backends --scenes room-1,studio-1,interior-1,balls:1000000 --spp 4 --repeat 3
 run live.txt "$bin/tessera" bench live

@@ -142,6 +142,17 @@ def adaptive_rows(report):
                    f"{noise[0]:.2f} to {noise[-1]:.2f} | {100 * row['deciding']:.1f} % | {scene['masked_rate']:.2f} |")
 
 
+def adaptive_error_rows(report):
+    yield "| scene | error | spp | gain | trimmed | light | true error | decisions |\n|---|---|---|---|---|---|---|---|"
+    for scene in report:
+        for row in scene["rows"]:
+            if not row["error"]:
+                continue
+            error = sorted(row["true_error"])
+            yield (f"| `{scene['scene']}` | {row['error']:g} | {short(row['spp'])} | {row['gain']:.2f} | {row['trimmed_gain']:.2f} | {row['light']:.3f} | "
+                   f"{error[0]:.2f} to {error[-1]:.2f} | {100 * row['deciding']:.1f} % |")
+
+
 def page(folder, version):
     yield INTRODUCTION
     yield machine(version)
@@ -172,6 +183,12 @@ def page(folder, version):
            "of the time that decisions take; and samples per second of units with a quarter of the pixels, relative to whole tiles.\n"
            f"{measured(folder, 'adaptive_sampling.json')}")
     yield "\n".join(adaptive_rows(adaptive)) + "\n"
+    errors = json.loads((folder / "adaptive_error.json").read_text())
+    yield ("## Adaptive sampling until an error of the denoised picture\n\n"
+           "The same for pictures of `fdf` that end at an error (`--denoise --error`): relMSE of as many uniform samples, denoised likewise, over "
+           "theirs, and their true relMSE over the wanted one. The picture is small, and its samples are few: decisions take a larger part of the "
+           f"time than in a large one.\n{measured(folder, 'adaptive_error.json')}")
+    yield "\n".join(adaptive_error_rows(errors)) + "\n"
     for name, heading, text in TEXTS:
         output = "\n".join(line.rstrip() for line in (folder / f"{name}.txt").read_text().strip().split("\n"))
         yield f"## {heading}\n\n{text}\n{measured(folder, name + '.txt')}\n```\n{output}\n```\n"

@@ -44,4 +44,13 @@ Expected<void> check_reproducible(const std::string& filter) {
     return why.empty() ? Expected<void>() : failure(ErrorCode::InvalidInput, "--reproducible: " + why);
 }
 
+Expected<void> check_error_estimate(const std::string& filter) {
+    const auto choice = filter::parse_choice(filter, filter::catalog());
+    if (!choice) return tl::unexpected(choice.error());
+    const std::string why = filter::why_no_error_estimate(*choice);
+    return why.empty() ? Expected<void>()
+                       : failure(ErrorCode::InvalidInput,
+                                 "--error: " + why + ": leave the filter to --denoise, or use --noise");
+}
+
 }  // namespace tessera::tools

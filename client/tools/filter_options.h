@@ -28,5 +28,6 @@ Expected<void> check_available(const std::string& filter);
 
 // InvalidInput if a reproducible frame cannot have the filter.
 Expected<void> check_reproducible(const std::string& filter);
+Expected<void> check_error_estimate(const std::string& filter);  // for --error
 
 }  // namespace tessera::tools

@@ -37,6 +37,7 @@ double progress_fraction(const session::JobStatus& job) {
     return double(job.progress.samples) / double(std::max<std::uint64_t>(job.progress.samples_expected, 1));
 }
 
+// 0: unknown.
 Json noise_value(double noise) {
     return noise > 0.0 ? Json(noise) : Json();
 }
@@ -49,6 +50,7 @@ Json job_value(const session::JobStatus& job) {
                {"done", progress_fraction(job)},
                {"samples", job.progress.samples},
                {"noise", noise_value(job.has_ended ? job.summary.noise : job.progress.noise)},
+               {"error", noise_value(job.has_ended ? job.summary.error : job.progress.error)},
                {"phase", job.has_ended ? Json() : Json(enumerator_name(job.progress.phase))},
                {"kept_until", job.kept_until == 0 ? Json() : Json(double(job.kept_until) * 1e-9)}};
     if (!job.has_ended) return value;
@@ -89,6 +91,7 @@ std::string state_of(const session::JobStatus& job) {
         text = formatted("%3.0f %%  %s", 100.0 * progress_fraction(job),
                          display_name(enumerator_name(job.progress.phase)).c_str());
         if (job.progress.noise > 0.0) text += formatted(", noise %.3g", job.progress.noise);
+        if (job.progress.error > 0.0) text += formatted(", error %.3g", job.progress.error);
     }
     if (job.kept_until != 0) text += "; its client was lost, kept until " + local_time(job.kept_until);
     return text;

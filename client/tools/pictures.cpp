@@ -94,6 +94,7 @@ std::map<std::string, std::string> provenance(const session::ViewRequest& reques
     std::map<std::string, std::string> attributes = view_attributes(request.view);
     if (result.has_picture()) attributes["tessera.filter"] = result.summary.picture.filter;
     if (result.summary.noise > 0.0) attributes["tessera.noise"] = formatted("%.6g", result.summary.noise);
+    if (result.summary.error > 0.0) attributes["tessera.error"] = formatted("%.6g", result.summary.error);
     if (!result.summary.failed_tiles.empty())
         attributes["tessera.failedTiles"] = failed_tiles_text(result.summary.failed_tiles);
     attributes.insert({{"tessera.software", "tessera " + cli::version()},

@@ -34,7 +34,7 @@ std::string describe(const session::ViewProgress& progress, const session::ViewR
         case session::Phase::Rendering:
             break;
     }
-    const bool by_time = request.stop.time_limit > Duration::zero() && request.stop.noise == 0.0;
+    const bool by_time = request.stop.time_limit > Duration::zero() && !request.stop.has_goal();
     const double elapsed = std::max(seconds(progress.elapsed), 1e-3);
     const double expected = double(std::max<std::uint64_t>(progress.samples_expected, 1));
     // The rest of the samples, after those of a film that is continued.
@@ -49,9 +49,11 @@ std::string describe(const session::ViewProgress& progress, const session::ViewR
     std::string text = formatted("%3.0f %%   ", 100.0 * done);
     if (request.stop.has_steps()) {
         text += formatted("%.1f spp", spp);
-        if (progress.noise > 0.0) text += formatted("   noise %.3g", progress.noise);
-        if (progress.noise > 0.0 && request.stop.noise > 0.0)
-            text += formatted(" of %.3g", request.stop.noise);
+        const bool has_error = request.stop.error > 0.0;
+        const double so_far = has_error ? progress.error : progress.noise;
+        const double wanted = has_error ? request.stop.error : request.stop.noise;
+        if (so_far > 0.0) text += formatted("   %s %.3g", has_error ? "error" : "noise", so_far);
+        if (so_far > 0.0 && wanted > 0.0) text += formatted(" of %.3g", wanted);
     } else {
         text += by_time
                     ? formatted("%.1f spp", spp)

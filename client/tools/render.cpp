@@ -90,8 +90,8 @@ class Render {
             return report_error(
                 name_, cli::ExitUsage,
                 "film '" + film_->path +
-                    "': its pixels have different numbers of samples (--noise or --time): continue "
-                    "it with --noise or --time, --spp is an upper bound");
+                    "': its pixels have different numbers of samples (--noise, --error or --time): "
+                    "continue it with one of them, --spp is an upper bound");
         if (plan_.job.reproducible && film_->kinds.find(';') != std::string::npos)
             return report_error(name_, ExitBadInput,
                                 "--reproducible: film '" + film_->path +

@@ -75,15 +75,21 @@ Expected<void> set_amount(const RenderOptions& options, session::ViewRequest& jo
         if (!(*options.noise > 0.0 && *options.noise <= 1.0)) return wrong("--noise: above 0, up to 1");
         job.stop.noise = *options.noise;
     }
-    // Without a noise, --time is only an upper bound of --spp.
-    job.stop.uniform = options.adaptive == "off" || (options.spp && !options.noise);
+    if (options.error) {
+        if (options.noise) return wrong("--noise and --error exclude each other: leave one out");
+        if (!(*options.error > 0.0 && *options.error <= 1.0)) return wrong("--error: above 0, up to 1");
+        job.stop.error = *options.error;
+    }
+    const bool has_goal = job.stop.has_goal();
+    // Without a noise or error, --time is only an upper bound of --spp.
+    job.stop.uniform = options.adaptive == "off" || (options.spp && !has_goal);
     if (options.time) {
         const auto limit = parse_duration(*options.time);
         if (!limit) return wrong(std::string("--time: ") + limit.error().what());
         job.stop.time_limit = *limit;
-        job.stop.spp = options.spp.value_or(options.noise ? MostSamples : MaxSpp);
+        job.stop.spp = options.spp.value_or(has_goal ? MostSamples : MaxSpp);
     } else {
-        job.stop.spp = options.spp.value_or(options.noise ? MostSamples : job.stop.spp);
+        job.stop.spp = options.spp.value_or(has_goal ? MostSamples : job.stop.spp);
     }
     if (job.stop.spp == 0 || job.stop.spp > MaxSpp) return wrong("--spp: between 1 and 2^31");
     return {};
@@ -156,6 +162,9 @@ Expected<void> set_filter(const RenderOptions& options, session::ViewRequest& jo
     if (!filter) return tl::unexpected(filter.error());
     job.view.filter = *filter;
     if (filter->empty()) return {};
+    if (options.error) {
+        if (auto fine = check_error_estimate(*filter); !fine) return fine;
+    }
     if (options.reproducible) {
         if (auto fine = check_reproducible(*filter); !fine) return fine;
     }
@@ -202,8 +211,8 @@ Expected<void> set_continued(const RenderOptions& options, RenderPlan& plan) {
     if (!options.continued) return {};
     if (options.frames) return wrong("--continue and --frames exclude each other: a film is one picture");
     if (options.detach) return wrong("--continue and --detach exclude each other: wait for the picture");
-    if (!options.spp && !options.noise && !options.time)
-        return wrong("--continue: until when? Add --spp, --noise or --time");
+    if (!options.spp && !options.noise && !options.error && !options.time)
+        return wrong("--continue: until when? Add --spp, --noise, --error or --time");
     plan.continued = options.continued;
     plan.given = options.view;
     plan.job.stop.adapts_size = false;
@@ -279,15 +288,20 @@ void RenderOptions::add_to(cli::CommandLine& command) {
     command.option("--spp", "samples per pixel (64)", spp);
     command.option("--time",
                    "time budget, as 800ms or 10s, spent on the pixels that need it; with --denoise it "
-                   "includes denoising and encoding; with --spp or --noise it is an upper bound",
+                   "includes denoising and encoding; with --spp, --noise or --error it is an upper bound",
                    time);
     command.option(
         "--noise",
         "samples where they are needed, until the unfiltered picture has this relative error (the root "
         "of relMSE, as of tessera compare), say 0.02; --spp (of any pixel) and --time are upper bounds",
         noise);
+    command.option("--error",
+                   "the same until the picture as it is written, denoised or not, has this relMSE by the "
+                   "master's estimate, say 0.001: noise and bias of the denoiser",
+                   error);
     command.choice("--adaptive",
-                   "on: with --time or --noise pixels get the samples that they need; off: all get as many",
+                   "on: with --time, --noise or --error pixels get the samples that they need; off: all get "
+                   "as many",
                    adaptive, {"on", "off"});
     command.option(
         "--noise-map",
@@ -296,7 +310,7 @@ void RenderOptions::add_to(cli::CommandLine& command) {
     command.option(
         "--continue",
         "go on with the film of this EXR, written with --save-statistics: of the same scene, with the "
-        "camera, size, seed and samples in it, until --spp, --noise or --time",
+        "camera, size, seed and samples in it, until --spp, --noise, --error or --time",
         continued);
     command.option("--frames", "render frames A:B of the animation, each to its own -o out.%04d.exr", frames);
     command.option(
@@ -327,6 +341,7 @@ void RenderOptions::add_to(cli::CommandLine& command) {
          "tessera render room.glb -o room.png --spp 8 --denoise",
          "tessera render still.glb --env studio.exr -o still.png --time 800ms --denoise",
          "tessera render room.glb -o room.png --noise 0.02 --time 5min",
+         "tessera render room.glb -o room.png --denoise --error 0.002",
          "tessera render room.glb --continue film.exr -o film.exr --save-statistics --spp 256",
          "tessera render robot.glb --at 1.5 --animation walk -o robot.exr",
          "tessera render robot.glb --frames 0:47 --fps 24 -o robot.%04d.exr",

@@ -22,7 +22,7 @@ struct RenderOptions {
     std::vector<std::string> outputs;
     std::optional<std::uint64_t> spp, nodes, threads;
     std::optional<std::string> time, backend, device, cache, master, keys, wait_nodes, frames;
-    std::optional<double> fps, noise;
+    std::optional<double> fps, noise, error;
     std::optional<std::string> noise_map, continued;
     std::string user = "editor";
     std::string policy = "mixed", adaptive = "on";

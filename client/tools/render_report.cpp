@@ -74,17 +74,20 @@ Json picture_value(const session::ViewSummary& result) {
             {"notes", picture.notes}};
 }
 
-// The noise of a picture that was to have one, and what ended it; or of one that had a time.
+// The noise or error of a picture that was to have one, and what ended it; or the noise of one that had a time.
 std::string noise_text(const session::StopRule& stop, const session::ViewSummary& result) {
     const bool is_complete = result.outcome == session::Outcome::Complete;
     // Else samples have come since the last decision.
     const char* bound = is_complete ? "" : " or less";
-    if (stop.noise == 0.0) return result.noise > 0.0 ? formatted("noise %.3g or less", result.noise) : "";
-    if (!stop.has_steps()) return "noise unknown: it takes 16 samples of a pixel, and --spp 32 or more";
-    const bool is_known = result.noise > 0.0 || is_complete;  // 0: it is black
-    if (is_known && result.noise <= stop.noise)
-        return formatted("noise %.3g%s: as wanted", result.noise, bound);
-    return (is_known ? formatted("noise %.3g%s: ", result.noise, bound) : std::string("noise unknown: ")) +
+    if (!stop.has_goal()) return result.noise > 0.0 ? formatted("noise %.3g or less", result.noise) : "";
+    const bool is_error = stop.error > 0.0;
+    const std::string name = is_error ? "error" : "noise";
+    const double reached = is_error ? result.error : result.noise,
+                 wanted = is_error ? stop.error : stop.noise;
+    if (!stop.has_steps()) return name + " unknown: it takes 16 samples of a pixel, and --spp 32 or more";
+    const bool is_known = reached > 0.0 || is_complete;  // 0: it is black
+    if (is_known && reached <= wanted) return formatted("%s %.3g%s: as wanted", name.c_str(), reached, bound);
+    return name + (is_known ? formatted(" %.3g%s: ", reached, bound) : std::string(" unknown: ")) +
            (result.outcome == session::Outcome::TimeUp ? "the time was up before it was as wanted"
             : is_complete                              ? "--spp was reached before it was as wanted"
                                                        : "the picture ended before it was as wanted");
@@ -124,6 +127,7 @@ std::string as_json(const RenderReport& report) {
         {"nonfinite_samples", result.nonfinite_samples},
         {"samples_before", result.samples_before},
         {"noise", result.noise > 0.0 ? Json(result.noise) : Json()},
+        {"error", result.error > 0.0 ? Json(result.error) : Json()},
         {"clamp",
          report.request.view.clamp_indirect > 0.0f ? Json(report.request.view.clamp_indirect) : Json()},
         {"peak_memory_bytes", peak_memory_bytes()},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "master/render/adaptive/filtered_error.h"
 #include "master/render/adaptive/saved_step.h"
 #include "mediator/frame/resolve.h"
 #include "mediator/wire/film_state_codec.h"
@@ -45,9 +46,9 @@ void FilmStore::copy(ViewId view) {
     enqueue(Copy{view}, 0);
 }
 
-void FilmStore::decide(ViewId view, std::uint64_t revision, const AdaptiveSettings& settings,
+void FilmStore::decide(const view::View& view, const AdaptiveSettings& settings, double error,
                        std::vector<std::uint32_t> closed_tiles) {
-    enqueue(Decide{view, revision, settings, std::move(closed_tiles)}, 0);
+    enqueue(Decide{view, settings, error, std::move(closed_tiles)}, 0);
 }
 
 void FilmStore::reconstruct(std::uint64_t frame, const view::View& view, const SceneState& scene,
@@ -86,7 +87,7 @@ void FilmStore::run(std::stop_token stop) {
             outputs_.put(TaskFailure{std::string("a task of the film store failed: ") + error.what()});
             // The view ends with the samples that it has, instead of waiting for ever.
             if (const auto* decide = std::get_if<Decide>(&task))
-                outputs_.put(StepDecision{decide->view, decide->revision, {}});
+                outputs_.put(StepDecision{decide->view.id, decide->view.revision, {}});
         }
         if (const auto* film = std::get_if<Film>(&task)) {
             const std::scoped_lock done(mutex_);
@@ -207,8 +208,8 @@ void FilmStore::perform(Copy& task) {
 }
 
 void FilmStore::perform(Decide& task) {
-    OpenFilm* opened = film(task.view);
-    if (opened == nullptr || opened->revision != task.revision) return;
+    OpenFilm* opened = film(task.view.id);
+    if (opened == nullptr || opened->revision != task.view.revision) return;
     const FrameAssembler& assembler = *opened->assembler;
     std::vector<std::uint8_t> doublings = assembler.doublings();
     const frame::FilmTile film = assembler.whole();
@@ -219,9 +220,12 @@ void FilmStore::perform(Decide& task) {
                             (rect.x - film.rect.x),
                         rect.width, std::uint8_t{255});
     }
-    Step step = next_step(film, doublings, assembler.tiles(), task.settings, &arena_);
+    const ErrorGoal goal{task.view, task.error};
+    Step step = task.error > 0.0
+                    ? next_step_to(goal, film, doublings, assembler.tiles(), task.settings, arena_)
+                    : next_step(film, doublings, assembler.tiles(), task.settings, &arena_);
     opened->step = step.rounds;
-    outputs_.put(StepDecision{task.view, task.revision, std::move(step)});
+    outputs_.put(StepDecision{task.view.id, task.view.revision, std::move(step)});
 }
 
 void FilmStore::perform(Reconstruct& task) {

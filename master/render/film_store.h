@@ -43,8 +43,8 @@ class FilmStore {
     void copy(ViewId view);  // results in FilmBlocks, or in nothing when there is no such film
 
     // The next step of an adaptive picture; results in a StepDecision, or in nothing when there is no such film. Tiles that
-    // are closed get no more samples.
-    void decide(ViewId view, std::uint64_t revision, const AdaptiveSettings& settings,
+    // are closed get no more samples. `error`: the relMSE to reach of the view's filtered picture; 0: as `settings` say.
+    void decide(const view::View& view, const AdaptiveSettings& settings, double error,
                 std::vector<std::uint32_t> closed_tiles);
 
     enum class FilmHash { Wanted, NotWanted };
@@ -95,9 +95,9 @@ class FilmStore {
         ViewId view;
     };
     struct Decide {
-        ViewId view;
-        std::uint64_t revision;
+        view::View view;
         AdaptiveSettings settings;
+        double error;
         std::vector<std::uint32_t> closed_tiles;
     };
     struct Reconstruct {

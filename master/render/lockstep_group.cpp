@@ -208,14 +208,13 @@ std::vector<ViewState*> LockstepGroup::views_with_steps() {
 }
 
 void LockstepGroup::request_step(ViewState& view) {
-    const ViewId pass = view.pass().view.id;
     const AdaptiveSettings settings =
         settings_of_mean(open_->spp * view.priority(), view.pass().view.window.pixel_count(), view.run.steps,
                          view.run.step_is_uniform);
     std::vector<std::uint32_t> closed;
-    for (const TileFailure& failure : passes_.dispatcher.find(pass)->failed_tiles())
+    for (const TileFailure& failure : passes_.dispatcher.find(view.pass().view.id)->failed_tiles())
         closed.push_back(failure.tile);
-    passes_.film.decide(pass, view.pass().view.revision, settings, std::move(closed));
+    passes_.film.decide(view.pass().view, settings, 0.0, std::move(closed));
 }
 
 void LockstepGroup::take(ViewState& view, StepDecision&& decision) {

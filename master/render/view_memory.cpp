@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "master/filter/catalog.h"
+#include "master/render/adaptive/filtered_error.h"
 #include "master/render/view_request.h"
 #include "mediator/picture/noise_map.h"
 
@@ -22,11 +23,18 @@ const filter::Description* denoiser_of(const view::View& view) {
 
 void ViewMemory::add(const session::ViewRequest& request) {
     bytes_ += film_bytes(request.view);
+    const std::size_t window_pixels = request.view.window.pixel_count();
     if (request.has_steps()) {  // a decision reads a copy of the film
-        decision_ = std::max(decision_, film_bytes(request.view) + picture::NoiseMap::BytesPerPixel *
-                                                                       request.view.window.pixel_count());
+        decision_ =
+            std::max(decision_, film_bytes(request.view) + picture::NoiseMap::BytesPerPixel * window_pixels);
     }
     const filter::Description* denoiser = denoiser_of(request.view);
+    if (request.has_steps() && request.stop.error > 0.0) {
+        const double filter = denoiser != nullptr ? denoiser->bytes_per_pixel : 0.0;
+        const double error =
+            double(window_pixels) * (filter + double(FilteredError::bytes_per_pixel(request.view.channels)));
+        decision_ = std::max(decision_, film_bytes(request.view) + static_cast<std::uint64_t>(error));
+    }
     if (denoiser == nullptr) return;
     const Rect& window = request.view.window;
     double pixels = double(window.pixel_count());

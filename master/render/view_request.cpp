@@ -76,14 +76,21 @@ std::string problem_of(const session::ViewRequest& request) {
     if (stop.spp == 0 || stop.spp > session::MaxSamplesPerPixel)
         return "samples per pixel are not between 1 and 2^31";
     if (!(stop.noise >= 0.0 && stop.noise <= 1e6)) return "the noise to reach is not between 0 and 1e6";
-    if (stop.noise > 0.0 && request.frames == session::Frames::All)
-        return "only views that deliver their last picture can stop at a noise";
+    if (!(stop.error >= 0.0 && stop.error <= 1e6)) return "the error to reach is not between 0 and 1e6";
+    if (stop.noise > 0.0 && stop.error > 0.0)
+        return "a view can stop at a noise or at an error, not at both: leave one out";
+    if (stop.has_goal() && request.frames == session::Frames::All)
+        return "only views that deliver their last picture can stop at a noise or an error";
     if (request.film_state && (!request.film || request.frames == session::Frames::All))
         return "only the film of a view that delivers its last picture can be asked for as blocks";
     if (request.name.size() > MaxName) return "the view's name is longer than 128 bytes";
     if (request.tile != 0 && request.tile < SmallestTile) return "tiles must be at least 8 pixels wide";
     const auto filter = filter::parse_choice(view.filter, filter::catalog());
     if (!filter) return filter.error().what();
+    if (stop.error > 0.0) {
+        if (std::string why = filter::why_no_error_estimate(*filter); !why.empty())
+            return "the error of its picture cannot be estimated: " + why;
+    }
     if (request.reproducible) {
         if (std::string why = filter::why_not_reproducible(*filter->entry); !why.empty()) return why;
     }
@@ -127,6 +134,7 @@ void complete(session::ViewRequest& request) {
     if (!request.has_steps()) return;
     request.view.channels.insert(frame::Channel::Radiance);
     request.view.channels.insert(frame::Channel::BlockVariance);
+    if (request.stop.error > 0.0) request.view.channels.insert(frame::Channel::FirstHalf);
 }
 
 view::View feature_view(const view::View& view) {

@@ -52,13 +52,13 @@ void ViewRunner::request_step(ViewState& view, TimePoint now) {
         closed.push_back(failure.tile);
     AdaptiveSettings settings{
         .noise = stop.noise, .max_samples = stop.spp, .step = run.steps, .uniform = stop.uniform};
-    if (stop.noise == 0.0 && run.deadline) {
+    if (!stop.has_goal() && run.deadline) {
         spend_time(view, now, settings);
     } else if (view.shows_all()) {
         settings = settings_of_mean(stop.spp, view.request.view.window.pixel_count(), run.steps,
                                     run.step_is_uniform);
     }
-    passes_.film.decide(pass, view.pass().view.revision, settings, std::move(closed));
+    passes_.film.decide(view.pass().view, settings, stop.error, std::move(closed));
 }
 
 void ViewRunner::take(ViewState& view, StepDecision&& decision, TimePoint now) {
@@ -69,8 +69,8 @@ void ViewRunner::take(ViewState& view, StepDecision&& decision, TimePoint now) {
     run.is_deciding = false;
     run.deciding += now - run.deciding_since;
     const bool has_chosen = !decision.step.rounds.empty();
-    const bool may_be_uniform = view.request.stop.noise == 0.0 && !run.step_is_uniform &&
-                                (run.deadline || decision.step.noise == 0.0);
+    const bool may_be_uniform =
+        !view.request.stop.has_goal() && !run.step_is_uniform && (run.deadline || decision.step.noise == 0.0);
     if (!has_chosen && !run.outcome && may_be_uniform) {
         // No light was found yet, or the samples that are left in the time are fewer than a pixel would get.
         run.step_is_uniform = true;
@@ -78,6 +78,7 @@ void ViewRunner::take(ViewState& view, StepDecision&& decision, TimePoint now) {
     }
     run.step_is_uniform = false;
     run.noise = decision.step.noise;
+    run.error = decision.step.error;
     run.samples_expected = decision.step.samples_expected;
     ++run.steps;
     if (!run.outcome) passes_.dispatcher.find(decision.view)->begin_step(std::move(decision.step.rounds));

@@ -66,6 +66,7 @@ struct Run {
     Duration deciding{0};          // in all steps
     bool step_is_uniform = false;  // with nothing but a clock: no pixel was chosen by its noise
     double noise = 0.0;            // as of the last decision; 0: unknown
+    double error = 0.0;            // likewise, of the filtered picture
     std::uint64_t samples_expected = 0;
     session::WireBytes bytes_before;  // the master's counters at the start
 

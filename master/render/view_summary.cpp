@@ -39,6 +39,7 @@ session::ViewProgress progress_of(const ViewState& view, std::uint32_t nodes) {
         progress.samples_expected =
             std::max(view.run.samples_expected, pixels * session::StopRule::AdaptiveBase);
     progress.noise = view.run.noise;
+    progress.error = view.run.error;
     progress.samples_before = view.run.samples_before;
     if (!view.passes.empty()) progress.elapsed = view.run.seen_at - view.run.rendering_since;
     return progress;
@@ -60,7 +61,8 @@ session::ViewSummary summary_of(const ViewState& view, const SceneFacts& facts,
         .noise = run.noise,
         .samples_before = run.samples_before,
         .steps = run.steps,
-        .scene_hash = view.scene_hash};
+        .scene_hash = view.scene_hash,
+        .error = run.error};
     if (!view.passes.empty()) {
         done.seconds_render = seconds(*run.ended - run.rendering_since);
         done.samples = run.samples;

@@ -130,6 +130,21 @@ std::string why_not_reproducible(const FilterEntry& entry) {
            "' does not give the same bits on every machine: choose another filter for a reproducible frame";
 }
 
+std::string why_no_error_estimate(const Choice& choice) {
+    using enum frame::Channel;
+    constexpr frame::ChannelSet Readable{Radiance,    BlockVariance, Albedo,    Normal,        Depth,
+                                         ObjectIndex, Alpha,         Headlight, ShadingFeature};
+    const std::string name = "filter '" + std::string(choice.entry->description.name) + "'";
+    if (choice.entry->description.temporal) return name + " has a history of earlier pictures";
+    std::string why;
+    (choice.channels() - Readable).for_each([&](const frame::ChannelInfo& entry) {
+        why = name + " reads '" + std::string(entry.name) +
+              "', which the film does not have of each half of its samples";
+        return false;
+    });
+    return why;
+}
+
 std::string to_text(const Choice& choice) {
     const Description& filter = choice.entry->description;
     std::string text;

@@ -33,6 +33,10 @@ std::string why_unavailable(const FilterEntry& entry);
 // Why it cannot be used for a reproducible frame; "" if it can.
 std::string why_not_reproducible(const FilterEntry& entry);
 
+// Why the error of its pictures cannot be estimated by those of the halves of a film (master/render/adaptive/filtered_error.h);
+// "" if it can. It may read features, but no statistics of radiance of which the film has no halves.
+std::string why_no_error_estimate(const Choice& choice);
+
 // The shortest text that parses to the same: default values are left out.
 std::string to_text(const Choice& choice);
 

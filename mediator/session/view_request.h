@@ -47,7 +47,9 @@ struct StopRule {
         false;  // if the budget is too small for 2 samples per pixel: render at half or a quarter of the size
     // Not 0: until the unfiltered picture has this estimated sqrt(relMSE); spp and times are upper bounds.
     double noise = 0.0;
-    // All pixels have as many samples. Else they have what they need if noise or time end the picture, or if it is shown
+    // Not 0: until the picture that its filter makes has this estimated relMSE; likewise. Of noise and error, at most one.
+    double error = 0.0;
+    // All pixels have as many samples. Else they have what they need if noise, error or time end the picture, or if it is shown
     // while it is rendered; spp is then the mean.
     bool uniform = false;
 
@@ -55,7 +57,8 @@ struct StopRule {
     // What every pixel gets before the first decision: fewer say too little.
     static constexpr std::uint64_t AdaptiveBase = 16;
     // After AdaptiveBase samples there are steps, each with a decision.
-    bool has_steps() const { return (noise > 0.0 || (has_clock() && !uniform)) && spp > AdaptiveBase; }
+    bool has_steps() const { return (has_goal() || (has_clock() && !uniform)) && spp > AdaptiveBase; }
+    bool has_goal() const { return noise > 0.0 || error > 0.0; }
     bool has_clock() const { return has_budget() || time_limit > Duration::zero(); }
     // When sampling must end, given when the nodes were ready and the predicted time of filter and encoding.
     std::optional<TimePoint> deadline(TimePoint ready, TimePoint now, Duration afterwards) const {
@@ -76,7 +79,8 @@ struct StopRule {
     static constexpr auto describe(auto row) {
         return std::tuple(row(1, "spp", &StopRule::spp), row(2, "time_limit", &StopRule::time_limit),
                           row(3, "budget", &StopRule::budget), row(4, "adapts_size", &StopRule::adapts_size),
-                          row(5, "noise", &StopRule::noise), row(6, "uniform", &StopRule::uniform));
+                          row(5, "noise", &StopRule::noise), row(6, "uniform", &StopRule::uniform),
+                          row(7, "error", &StopRule::error));
     }
 };
 

@@ -29,12 +29,14 @@ struct ViewProgress {
     Duration elapsed{};  // since rendering began
     double noise = 0.0;  // of an adaptive picture, at the last decision: sqrt(relMSE); 0: unknown
     std::uint64_t samples_before = 0;  // of `samples`, those of the film that it continues
+    double error = 0.0;  // estimated relMSE of the filtered picture, likewise, if the view stops at an error
     static constexpr auto describe(auto row) {
         using Self = ViewProgress;
         return std::tuple(row(1, "phase", &Self::phase), row(2, "samples", &Self::samples),
                           row(3, "samples_expected", &Self::samples_expected), row(4, "rays", &Self::rays),
                           row(5, "nodes", &Self::nodes), row(6, "elapsed", &Self::elapsed),
-                          row(7, "noise", &Self::noise), row(8, "samples_before", &Self::samples_before));
+                          row(7, "noise", &Self::noise), row(8, "samples_before", &Self::samples_before),
+                          row(9, "error", &Self::error));
     }
 };
 
@@ -145,6 +147,7 @@ struct ViewSummary {
     std::uint64_t samples_before = 0;                // likewise
     std::uint32_t steps = 0;                         // of an adaptive picture: decided ones
     Hash128 scene_hash;                              // of the scene in the film
+    double error = 0.0;                              // as in ViewProgress
     static constexpr auto describe(auto row) {
         using Self = ViewSummary;
         return std::tuple(
@@ -159,7 +162,8 @@ struct ViewSummary {
             row(17, "min_samples", &Self::min_samples), row(18, "max_samples", &Self::max_samples),
             row(19, "failed_tiles", &Self::failed_tiles, Limit{MaxFailedTiles}),
             row(20, "noise", &Self::noise), row(21, "samples_before", &Self::samples_before),
-            row(22, "steps", &Self::steps), row(23, "scene_hash", &Self::scene_hash));
+            row(22, "steps", &Self::steps), row(23, "scene_hash", &Self::scene_hash),
+            row(24, "error", &Self::error));
     }
 };
 

@@ -96,6 +96,26 @@ TEST(AdaptiveViews, HaveTheSameBitsForAnyClusterAndAnyFaults) {
     }
 }
 
+// Steps that a filter of halves of the film decides.
+TEST(AdaptiveViews, EndAtTheErrorOfTheirFilteredPicture) {
+    constexpr double Error = 1e-4;
+    const auto render_on = [&](int nodes) {
+        LoopbackCluster cluster;
+        for (int i = 0; i < nodes; ++i) cluster.add_node("null");
+        session::ViewRequest request = adaptive_request(0.0);
+        request.stop.error = Error;
+        request.view.filter = "gauss:sigma=0.5";
+        request.min_nodes = static_cast<std::uint32_t>(nodes);
+        return render_adaptive(cluster, request);
+    };
+    const client::ViewResult one = render_on(1), three = render_on(3);
+    EXPECT_GT(one.summary.error, 0.3 * Error);
+    EXPECT_LE(one.summary.error, Error);
+    EXPECT_GT(one.summary.steps, 1u);
+    EXPECT_EQ(three.summary.error, one.summary.error);
+    EXPECT_EQ(adaptive_hash(three), adaptive_hash(one));
+}
+
 TEST(AdaptiveViews, SurviveANodeThatDisconnects) {
     LoopbackCluster cluster;
     cluster.add_node("null", {}, 2us);

@@ -33,7 +33,8 @@ namespace fs = std::filesystem;
 constexpr net::Role Roles[] = {net::Role::Viewer, net::Role::Editor, net::Role::Node, net::Role::Operator};
 
 // Every other frame gets its samples where they are needed, of about as many.
-constexpr std::array StopRules{session::StopRule{.spp = 64}, session::StopRule{.spp = 1024, .noise = 0.1}};
+constexpr std::array StopRules{session::StopRule{.spp = 64}, session::StopRule{.spp = 1024, .noise = 0.1},
+                               session::StopRule{.spp = 1024, .error = 0.01}};
 
 session::ViewRequest honest_request(const session::StopRule& stop) {
     session::ViewRequest request{.stop = stop, .wait_limit = 120s, .film = true};
@@ -42,6 +43,7 @@ session::ViewRequest honest_request(const session::StopRule& stop) {
     request.view.window = {0, 0, 96, 64};
     request.view.camera = view::perspective(glm::dmat4(1.0), 0.8, 1.5);
     request.view.channels = {frame::Channel::Radiance, frame::Channel::Albedo};
+    if (stop.error > 0.0) request.view.filter = "gauss";
     return request;
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -38,6 +39,27 @@ TEST_F(AdaptiveRender, StopsAtANoise) {
         render_embedded(folder, "uniform", scene, {"--size", "64x48", "--noise", "0.3", "--adaptive", "off"});
     EXPECT_LE(uniform["noise"], 0.3);
     EXPECT_EQ(spread("uniform"), 1.0);
+}
+
+TEST_F(AdaptiveRender, StopsAtTheErrorOfTheDenoisedPicture) {
+    const nlohmann::json denoised =
+        render_embedded(folder, "denoised", scene, {"--size", "64x48", "--denoise", "--error", "0.05"});
+    EXPECT_GT(denoised["error"], 0.0);
+    EXPECT_LE(denoised["error"], 0.05);
+    const nlohmann::json samples =
+        render_embedded(folder, "samples", scene, {"--size", "64x48", "--error", "0.09"});
+    EXPECT_LE(samples["error"], 0.09);
+    EXPECT_NEAR(samples["error"], std::pow(double(samples["noise"]), 2), 1e-9);
+    const auto exit_code = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> all{"render", scene, "-o", folder / "no.png", "--size", "64x48"};
+        all.insert(all.end(), options.begin(), options.end());
+        ChildProcess process(folder.path(), "no", "tessera", all);
+        return process.wait(std::chrono::minutes(2)).value_or(-1);
+    };
+    EXPECT_EQ(exit_code({"--error", "0"}), 64);
+    EXPECT_EQ(exit_code({"--error", "0.1", "--noise", "0.1"}), 64);
+    EXPECT_EQ(exit_code({"--error", "0.1", "--denoise=nfor"}), 64) << "the film has no halves of its halves";
+    EXPECT_FALSE(std::filesystem::exists(folder / "no.png"));
 }
 
 TEST_F(AdaptiveRender, TimeAndSamplesAreUpperBounds) {

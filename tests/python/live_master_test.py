@@ -80,6 +80,8 @@ class LiveMaster(unittest.TestCase):
         for noise in (0.0, -1.0, 1.5, math.nan):
             with self.assertRaisesRegex(tessera.InvalidInput, "noise"):
                 self.session.render(POSE, noise=noise)
+            with self.assertRaisesRegex(tessera.InvalidInput, "error"):
+                self.session.render(POSE, error=noise)
         late = self.session.render(POSE, size=(64, 48), spp=1 << 20, budget=0.5)
         self.assertEqual(late.summary.outcome, "time_up")
         with self.cluster.connect(name="bob") as bob, self.assertRaises(tessera.Refused):

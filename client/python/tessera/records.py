@@ -130,6 +130,7 @@ class Progress:
     nodes: int
     seconds: float  # since rendering began
     noise: float  # of a picture that stops at a noise, at the last decision; 0 = unknown
+    error: float = 0.0  # likewise, of one that stops at an error
 
 
 @dataclass(frozen=True)
@@ -161,6 +162,7 @@ class Summary(SampleCountNames):
     notes: tuple[str, ...]  # about the picture
     failed_tiles: tuple[FailedTile, ...] = ()  # the first ones
     noise: float = 0.0  # as in Progress
+    error: float = 0.0  # likewise
 
 
 _VIEW_PHASES = ("waiting_for_nodes", "syncing", "rendering", "delivering", "filtering")
@@ -199,7 +201,7 @@ def status_of(answer: Message) -> Status:
 def progress_of(message: Message) -> Progress:
     phase = _VIEW_PHASES[message.phase] if message.phase < len(_VIEW_PHASES) else "unknown"
     return Progress(phase, message.samples, message.samples_expected, message.rays, message.nodes,
-                    message.elapsed * 1e-9, message.noise)
+                    message.elapsed * 1e-9, message.noise, message.error)
 
 
 def summary_of(message: Message) -> Summary:
@@ -209,4 +211,4 @@ def summary_of(message: Message) -> Summary:
                    tuple(text(node.name) for node in message.nodes), text(message.picture.filter),
                    tuple(text(note) for note in message.picture.notes),
                    tuple(FailedTile(tile.rect.x, tile.rect.y, tile.rect.width, tile.rect.height, tile.samples, text(tile.message))
-                         for tile in message.failed_tiles), message.noise)
+                         for tile in message.failed_tiles), message.noise, message.error)

@@ -318,26 +318,32 @@ class Session(SessionNames):
                film: bool = False, filter: str = "", renderer: str = "path", bounces: int = 8, seed: int = 0,
                channels: Sequence[str] = ("radiance",), layers: int = ALL_LAYERS, clamp: float | None = None,
                budget: float | None = None, exposure: float | None = None, view_transform: str = "neutral",
-               min_nodes: int = 1, wait: float = 60.0, noise: float | None = None, adaptive: bool = True,
+               min_nodes: int = 1, wait: float = 60.0, noise: float | None = None,
+               error: float | None = None, adaptive: bool = True,
                on_progress: Callable[[Progress], None] | None = None) -> Rendered:
         """Renders one picture (arguments as in `open_view`) and returns its last frame and summary. Starts when `min_nodes` are
         ready, and gives up after `wait` seconds without nodes (outcome "no_nodes"). Calls `on_progress` with the progress.
 
         `spp` is 64 by default; with `budget` alone there is no limit, and pixels get the samples that they need. With `noise`
         they get them until the picture's relative error (root of relMSE, before the denoiser) is estimated to be that small: 0.02
-        is a clean picture. `spp` (of any pixel, 65536 by default) and `budget` are upper bounds then. Not `adaptive`: all pixels
-        get as many samples."""
+        is a clean picture. With `error` instead, until the picture that `filter` makes has this relMSE, by the master's estimate.
+        `spp` (of any pixel, 65536 by default) and `budget` are upper bounds then. Not `adaptive`: all pixels get as many
+        samples."""
         view = plain_view(size, channels=channels, renderer=renderer, bounces=bounces, seed=seed, filter=filter,
                           layers=layers, clamp=clamp)
         self.aim(view, at)
-        ends_by_spp = noise is None and (spp is not None or budget is None)
+        if noise is not None and error is not None:
+            raise InvalidInput("noise and error exclude each other: leave one out")
+        has_goal = noise is not None or error is not None
+        ends_by_spp = not has_goal and (spp is not None or budget is None)
         if spp is None:
-            spp = 65536 if noise is not None else 64 if budget is None else MAX_SPP
+            spp = 65536 if has_goal else 64 if budget is None else MAX_SPP
         request = self._request(view, spp, picture, film, "", budget, exposure, view_transform)
-        if noise is not None:
-            if not 0.0 < noise <= 1.0:
-                raise InvalidInput(f"noise: {noise} is not above 0 and up to 1")
-            request.wanted.stop.noise = noise
+        for goal, value in (("noise", noise), ("error", error)):
+            if value is not None:
+                if not 0.0 < value <= 1.0:
+                    raise InvalidInput(f"{goal}: {value} is not above 0 and up to 1")
+                setattr(request.wanted.stop, goal, value)
         request.wanted.stop.uniform = ends_by_spp or not adaptive
         request.wanted.frames, request.wanted.min_nodes = LAST_FRAME_ONLY, min_nodes
         request.wanted.wait_limit = int(wait * 1e9)

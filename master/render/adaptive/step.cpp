@@ -45,11 +45,12 @@ struct Candidate {
 class Chooser {
   public:
     Chooser(const frame::FilmTile& film, std::span<const std::uint8_t> doublings,
-            const AdaptiveSettings& settings, tbb::task_arena* arena)
+            const AdaptiveSettings& settings, tbb::task_arena* arena, std::span<const float> deviations)
         : film_(film),
           doublings_(doublings),
           settings_(settings),
           noise_(film, arena),
+          deviations_(deviations.empty() ? noise_.deviations() : deviations),
           is_chosen_(film.pixel_count(), false) {}
 
     double noise() const { return noise_.noise(); }
@@ -80,9 +81,9 @@ class Chooser {
     }
 
   private:
-    double best(std::size_t pixel) const { return noise_.deviations()[pixel] * best_per_deviation_; }
+    double best(std::size_t pixel) const { return deviations_[pixel] * best_per_deviation_; }
     double square(std::size_t pixel) const {
-        const double deviation = noise_.deviations()[pixel];
+        const double deviation = deviations_[pixel];
         return deviation * deviation;
     }
     bool may_have_more(std::size_t pixel) const {
@@ -98,15 +99,15 @@ class Chooser {
     }
 
     void choose_by_noise() {
-        const std::vector<float>& deviations = noise_.deviations();
         double sum = 0.0, error = 0.0;
-        for (std::size_t i = 0; i < deviations.size(); ++i) {
+        for (std::size_t i = 0; i < deviations_.size(); ++i) {
             if (film_.counts[i] == 0) continue;
-            sum += deviations[i];
+            sum += deviations_[i];
             error += square(i) / double(samples(i));
         }
         // Averaged deviations say less than relMSE: the same part of both is wanted.
-        const double part = settings_.noise / noise(), target = error * part * part;
+        const double wanted = settings_.noise / noise();
+        const double target = error * (settings_.part > 0.0 ? settings_.part : wanted * wanted);
         const double allowed = settings_.samples > 0 ? double(settings_.samples) : Unlimited;
         if (!(sum > 0.0)) return;
         best_per_deviation_ = std::min(sum / target, affordable(allowed));
@@ -115,7 +116,7 @@ class Chooser {
             [&](std::size_t pixel) { return double(samples(pixel)) * std::sqrt(2.0) <= best(pixel); });
         // All are within rounding of what they need.
         if (candidates.empty())
-            candidates = candidates_if([&](std::size_t pixel) { return deviations[pixel] > 0.0f; });
+            candidates = candidates_if([&](std::size_t pixel) { return deviations_[pixel] > 0.0f; });
         double reduction = 0.0;
         for (const Candidate& candidate : candidates)
             reduction += 0.5 * candidate.gain * double(samples(candidate.pixel));
@@ -130,13 +131,12 @@ class Chooser {
 
     // Samples per deviation with which all pixels together have as many as they may, if none gives back those that it has.
     double affordable(double allowed) const {
-        const std::vector<float>& deviations = noise_.deviations();
         double part = Unlimited;
         for (double last = 0.0; part != last;) {  // it decreases, as pixels leave the sums
             last = part;
             double left = allowed, sum = 0.0;
-            for (std::size_t i = 0; i < deviations.size(); ++i) {
-                const double n = double(samples(i)), deviation = deviations[i];
+            for (std::size_t i = 0; i < deviations_.size(); ++i) {
+                const double n = double(samples(i)), deviation = deviations_[i];
                 const bool gets_more = may_have_more(i) && n < part * deviation;
                 gets_more ? sum += deviation : left -= n;
             }
@@ -182,6 +182,7 @@ class Chooser {
     std::span<const std::uint8_t> doublings_;
     const AdaptiveSettings& settings_;
     picture::NoiseMap noise_;
+    std::span<const float> deviations_;  // of this step
     std::vector<bool> is_chosen_;
     double dealt_ = 0.0, best_per_deviation_ = 0.0;
 };
@@ -197,10 +198,11 @@ AdaptiveSettings settings_of_mean(std::uint64_t mean, std::size_t pixels, std::u
 }
 
 Step next_step(const frame::FilmTile& film, std::span<const std::uint8_t> doublings,
-               std::span<const Rect> tiles, const AdaptiveSettings& settings, tbb::task_arena* arena) {
-    Chooser chooser(film, doublings, settings, arena);
+               std::span<const Rect> tiles, const AdaptiveSettings& settings, tbb::task_arena* arena,
+               std::span<const float> deviations) {
+    Chooser chooser(film, doublings, settings, arena, deviations);
     Step step{.noise = chooser.noise(), .rounds = {}};
-    if (settings.noise > 0.0 && step.noise <= settings.noise) {
+    if (settings.part >= 1.0 || (settings.noise > 0.0 && step.noise <= settings.noise)) {
         step.samples_expected = chooser.samples();
         return step;
     }

@@ -14,6 +14,8 @@
 namespace tessera::master {
 
 struct AdaptiveSettings {
+    // Wanted part of the relMSE that the unfiltered picture has, 1 or more: it is good enough; 0: as `noise` says
+    double part = 0.0;
     double noise = 0.0;         // wanted sqrt(relMSE) of the unfiltered picture; 0: the best that can be had
     std::uint64_t samples = 0;  // that all pixels may have together; 0: any number
     std::uint64_t max_samples = 0;  // of a pixel
@@ -26,7 +28,8 @@ AdaptiveSettings settings_of_mean(std::uint64_t mean, std::size_t pixels, std::u
 
 // What an adaptive picture needs next. A pure function of the film, so that neither nodes nor the order of arrival matter.
 struct Step {
-    double noise = 0.0;                  // of the picture so far
+    double noise = 0.0;                  // of the unfiltered picture so far
+    double error = 0.0;                  // of the filtered one: its relMSE; 0: it was not asked for
     std::uint64_t samples_expected = 0;  // of all pixels, at the end
     std::vector<Round>
         rounds;  // by number of samples, ascending; empty: it is good enough, or may not have more
@@ -41,10 +44,10 @@ struct Step {
 // sample first, until the prediction is reached or the samples are used up. One eighth of the step goes to pixels by a
 // low-discrepancy order instead, because the estimate may have missed something. Where no pixel needs as much, those that gain
 // most are doubled all the same, as long as there are samples.
-// Without an arena in this thread; the same step either way.
+// Without an arena in this thread; the same step either way. `deviations`: d of each pixel; empty: of the unfiltered picture.
 Step next_step(const frame::FilmTile& film, std::span<const std::uint8_t> doublings,
                std::span<const Rect> tiles, const AdaptiveSettings& settings,
-               tbb::task_arena* arena = nullptr);
+               tbb::task_arena* arena = nullptr, std::span<const float> deviations = {});
 
 // Pixels of a tile, ascending, by the level of their block [2^level, 2^(level + 1)) and the index of the tile.
 using PixelsByRound = std::map<std::pair<std::uint32_t, std::size_t>, std::vector<std::uint32_t>>;

@@ -63,6 +63,11 @@ class AdaptiveMeasurement {
             if (!row) return std::nullopt;
             result.rows.push_back(*row);
         }
+        for (const double error : plan_.errors) {
+            const auto row = measure({.max_samples = MostSamples}, *truth, error);
+            if (!row) return std::nullopt;
+            result.rows.push_back(*row);
+        }
         return result;
     }
 
@@ -72,9 +77,12 @@ class AdaptiveMeasurement {
     view::View view(std::uint64_t seed) const {
         frame::ChannelSet channels = AdaptiveChannels;
         if (plan_.filter) channels = channels | filter::wanted_channels(*plan_.filter, {});
+        if (!plan_.errors.empty()) channels.insert(frame::Channel::FirstHalf);
         const auto path_class =
             plan_.filter ? plan_.filter->entry->description.path_class : view::PathClass::Indirect;
-        return sampler_.view(plan_.size.width, plan_.size.height, channels, path_class, seed);
+        view::View view = sampler_.view(plan_.size.width, plan_.size.height, channels, path_class, seed);
+        if (plan_.filter) view.filter = filter::to_text(*plan_.filter);
+        return view;
     }
 
     frame::Image picture(const frame::FilmTile& film, const view::View& view) const {
@@ -83,21 +91,35 @@ class AdaptiveMeasurement {
             .picture(filter::make_inputs(film, view));
     }
 
-    std::optional<AdaptiveRow> measure(const master::AdaptiveSettings& settings, const ReferencePair& truth) {
-        AdaptiveRow row{.noise = settings.noise, .true_noise = {}};
+    std::string goal_text(const master::AdaptiveSettings& settings, double wanted_error) const {
+        if (wanted_error > 0.0) return fmt::format("error {:g}", wanted_error);
+        if (settings.noise > 0.0) return fmt::format("noise {:g}", settings.noise);
+        return fmt::format("{} spp", settings.samples / (plan_.size.width * plan_.size.height));
+    }
+
+    std::optional<AdaptiveRow> measure(const master::AdaptiveSettings& settings, const ReferencePair& truth,
+                                       double wanted_error = 0.0) {
+        AdaptiveRow row{.noise = settings.noise,
+                        .error = wanted_error,
+                        .true_noise = {},
+                        .true_error = {},
+                        .estimated_error = {}};
         Errors adaptive, uniform;
         double sampling = 0.0, deciding = 0.0;
         for (std::uint32_t seed = 1; seed <= plan_.seeds; ++seed) {
-            progress_.say(
-                fmt::format("{}: {}, seed {} of {}", scene_.name,
-                            settings.noise > 0.0
-                                ? fmt::format("noise {:g}", settings.noise)
-                                : fmt::format("{} spp", settings.samples / view(seed).window.pixel_count()),
-                            seed, plan_.seeds));
-            const auto film = adaptive_film(sampler_, view(seed), settings, arena_, stop_);
+            progress_.say(fmt::format("{}: {}, seed {} of {}", scene_.name, goal_text(settings, wanted_error),
+                                      seed, plan_.seeds));
+            const auto film = adaptive_film(sampler_, view(seed), settings,
+                                            wanted_error > 0.0 ? &wanted_error : nullptr, arena_, stop_);
             if (!film) return std::nullopt;
             const double spp = double(film->samples) / double(film->whole.pixel_count());
-            adaptive.add(picture(film->whole, view(seed)), truth);
+            const frame::Image delivered = picture(film->whole, view(seed));
+            adaptive.add(delivered, truth);
+            if (wanted_error > 0.0) {
+                const double true_error = squared_errors(delivered, truth).relmse.all.value;
+                row.true_error.push_back(true_error / wanted_error);
+                row.estimated_error.push_back(true_error / film->error);
+            }
             const double error = squared_errors(frame::resolve_picture(film->whole), truth).relmse.all.value;
             row.true_noise.push_back(std::sqrt(std::max(0.0, error)) /
                                      (settings.noise > 0.0 ? settings.noise : film->noise));
@@ -114,7 +136,8 @@ class AdaptiveMeasurement {
         row.trimmed_gain = uniform.trimmed / adaptive.trimmed;
         row.light = adaptive.light / uniform.light;
         row.deciding = deciding / (deciding + sampling);
-        std::ranges::sort(row.true_noise);
+        for (std::vector<double>* ratios : {&row.true_noise, &row.true_error, &row.estimated_error})
+            std::ranges::sort(*ratios);
         return row;
     }
 

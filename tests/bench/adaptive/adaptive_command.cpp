@@ -22,24 +22,24 @@ constexpr const char* AdaptiveName = "bench adaptive";
 
 struct AdaptiveOptions {
     std::string assets = "tests/scenes", references = "adaptive-references", scenes, filter, spp = "32",
-                noise = "0.2,0.1", size = "96x54";
+                noise = "0.2,0.1", errors, size = "96x54";
     std::uint64_t reference_spp = 8192;
     std::uint32_t seeds = 4, jobs = 0;
     bool json = false;
 };
 
-Expected<std::vector<double>> parse_noise(const std::string& text) {
-    std::vector<double> noise;
+Expected<std::vector<double>> parse_goals(const std::string& option, const std::string& text) {
+    std::vector<double> goals;
     for (const std::string& item : split_list(text)) {
         double value = 0.0;
         const auto result = std::from_chars(item.data(), item.data() + item.size(), value);
         if (result.ec != std::errc() || result.ptr != item.data() + item.size() || !(value > 0.0) ||
             value > 1.0)
             return failure(ErrorCode::InvalidInput,
-                           "--noise: '" + item + "' is not above 0 and up to 1: write 0.2,0.1");
-        noise.push_back(value);
+                           option + ": '" + item + "' is not above 0 and up to 1: write 0.2,0.1");
+        goals.push_back(value);
     }
-    return noise;
+    return goals;
 }
 
 Expected<AdaptivePlan> parse_options(const AdaptiveOptions& options) {
@@ -51,17 +51,27 @@ Expected<AdaptivePlan> parse_options(const AdaptiveOptions& options) {
     auto scenes = choose_scenes(options.scenes, plan.assets);
     if (!scenes) return failure(ErrorCode::InvalidInput, std::string("--scenes: ") + scenes.error().what());
     plan.scenes = std::move(*scenes);
-    auto spp = parse_spp(options.spp);
-    if (!spp) return tl::unexpected(spp.error());
-    plan.spp = std::move(*spp);
-    auto noise = parse_noise(options.noise);
+    if (!options.spp.empty()) {  // else only goals are compared
+        auto spp = parse_spp(options.spp);
+        if (!spp) return tl::unexpected(spp.error());
+        plan.spp = std::move(*spp);
+    }
+    auto noise = parse_goals("--noise", options.noise);
     if (!noise) return tl::unexpected(noise.error());
     plan.noise = std::move(*noise);
+    auto errors = parse_goals("--error", options.errors);
+    if (!errors) return tl::unexpected(errors.error());
+    plan.errors = std::move(*errors);
     if (!options.filter.empty()) {
         auto choice = filter::parse_choice(options.filter, filter::catalog());
         if (!choice)
             return failure(ErrorCode::InvalidInput, std::string("--filter: ") + choice.error().what());
         plan.filter = std::move(*choice);
+    }
+    if (!plan.errors.empty()) {
+        if (!plan.filter) return failure(ErrorCode::InvalidInput, "--error: of which filter? Add --filter");
+        if (const std::string why = filter::why_no_error_estimate(*plan.filter); !why.empty())
+            return failure(ErrorCode::InvalidInput, "--error: " + why);
     }
     const auto size = parse_size(options.size);
     if (!size) return failure(ErrorCode::InvalidInput, std::string("--size: ") + size.error().what());
@@ -75,19 +85,25 @@ double median(const std::vector<double>& sorted) {
     return sorted.empty() ? 0.0 : sorted[sorted.size() / 2];
 }
 
+std::string range_of(const std::vector<double>& sorted) {
+    return sorted.empty()
+               ? ""
+               : fmt::format("{:5.2f} {:5.2f} {:5.2f}", sorted.front(), median(sorted), sorted.back());
+}
+
 void print(const AdaptiveScene& scene) {
     fmt::print(
         "{}: units with a quarter of the pixels have {:.2f} times the samples per second\n"
-        "  {:>5}  {:>7} {:>5}  {:>6} {:>7} {:>7}  {:>17}  {:>8}\n",
-        scene.name, scene.masked_rate, "noise", "spp", "steps", "gain", "trimmed", "light", "true noise",
-        "deciding");
+        "  {:>7}  {:>7} {:>5}  {:>6} {:>7} {:>7}  {:>17}  {:>8}  {:>17}  {:>17}\n",
+        scene.name, scene.masked_rate, "goal", "spp", "steps", "gain", "trimmed", "light", "true noise",
+        "deciding", "true error", "over estimate");
     for (const AdaptiveRow& row : scene.rows) {
+        const double goal = row.error > 0.0 ? row.error : row.noise;
         fmt::print(
-            "  {:>5}  {:>7.1f} {:>5.1f}  {:>6.2f} {:>7.2f} {:>7.4f}  {:>5.2f} {:>5.2f} {:>5.2f}  {:>6.2f} "
-            "%\n",
-            row.noise > 0.0 ? fmt::format("{:g}", row.noise) : "", row.spp, row.steps, row.gain,
-            row.trimmed_gain, row.light, row.true_noise.front(), median(row.true_noise),
-            row.true_noise.back(), 100.0 * row.deciding);
+            "  {:>7}  {:>7.1f} {:>5.1f}  {:>6.2f} {:>7.2f} {:>7.4f}  {:>17}  {:>6.2f} %  {:>17}  {:>17}\n",
+            goal > 0.0 ? fmt::format("{:g}", goal) : "", row.spp, row.steps, row.gain, row.trimmed_gain,
+            row.light, range_of(row.true_noise), 100.0 * row.deciding, range_of(row.true_error),
+            range_of(row.estimated_error));
     }
 }
 
@@ -96,12 +112,15 @@ nlohmann::ordered_json as_json(const AdaptiveScene& scene) {
     for (const AdaptiveRow& row : scene.rows) {
         rows.push_back(
             {{"noise", row.noise > 0.0 ? nlohmann::ordered_json(row.noise) : nlohmann::ordered_json()},
+             {"error", row.error > 0.0 ? nlohmann::ordered_json(row.error) : nlohmann::ordered_json()},
              {"spp", row.spp},
              {"steps", row.steps},
              {"gain", row.gain},
              {"trimmed_gain", row.trimmed_gain},
              {"light", row.light},
              {"true_noise", row.true_noise},
+             {"true_error", row.true_error},
+             {"true_over_estimated_error", row.estimated_error},
              {"deciding", row.deciding}});
     }
     return {{"scene", scene.name}, {"masked_rate", scene.masked_rate}, {"rows", rows}};
@@ -145,11 +164,13 @@ Command adaptive_command(cli::CommandLine& bench) {
                       "uniform samples. 'true noise' is the root of the true relMSE of "
                       "the unfiltered picture over the noise that was asked for, or over its "
                       "estimate where a number of samples was: smallest, median and "
-                      "largest of the seeds. 'deciding' is the part of the "
+                      "largest of the seeds; 'true error' is the relMSE of the filtered picture over "
+                      "the error that was asked for, then over its estimate. 'deciding' is the part of the "
                       "time that the choice of pixels takes.");
     line.option("--scenes", "a,b: built-in scenes or scene files (default: all)", options->scenes);
-    line.option("--spp", "mean samples per pixel to compare at, 16 or more", options->spp);
-    line.option("--noise", "noise to stop at", options->noise);
+    line.option("--spp", "mean samples per pixel to compare at, 16 or more; '': none", options->spp);
+    line.option("--noise", "noise to stop at; '': none", options->noise);
+    line.option("--error", "relMSE of the filtered picture to stop at", options->errors);
     line.option("--filter", "compare the pictures of this filter (default: unfiltered ones)",
                 options->filter);
     line.option("--size", "picture size", options->size);

@@ -68,8 +68,8 @@ std::vector<Unit> whole_tiles(const std::vector<Rect>& tiles, const frame::Sampl
 }  // namespace
 
 std::optional<AdaptiveFilm> adaptive_film(const Sampler& sampler, const view::View& view,
-                                          const master::AdaptiveSettings& settings, tbb::task_arena& arena,
-                                          const std::stop_token& stop) {
+                                          const master::AdaptiveSettings& settings, const double* goal,
+                                          tbb::task_arena& arena, const std::stop_token& stop) {
     const std::vector<Rect> tiles = master::tile_grid(view.window, sampler.tile());
     master::FrameAssembler film(tiles, view.channels, session::MaxSamplesPerPixel);
     AdaptiveFilm result{.whole = {}};
@@ -88,9 +88,12 @@ std::optional<AdaptiveFilm> adaptive_film(const Sampler& sampler, const view::Vi
         const std::vector<std::uint8_t> doublings = film.doublings();
         result.whole = film.whole();
         next.step = result.steps;
-        const master::Step step = master::next_step(result.whole, doublings, tiles, next);
+        const master::Step step =
+            goal != nullptr ? master::next_step_to({view, *goal}, result.whole, doublings, tiles, next, arena)
+                            : master::next_step(result.whole, doublings, tiles, next);
         result.seconds_deciding += seconds(clock.now() - started);
         result.noise = step.noise;
+        result.error = step.error;
         if (step.rounds.empty()) break;
         ++result.steps;
         std::vector<Unit> dealt;

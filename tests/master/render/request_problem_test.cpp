@@ -45,6 +45,32 @@ TEST(RequestProblem, RejectsNoisesThatCannotBeReached) {
     EXPECT_NE(problem_of(request).find("can stop at a noise"), std::string::npos);
 }
 
+TEST(RequestProblem, RejectsErrorsThatCannotBeReachedOrEstimated) {
+    session::ViewRequest request = request_with({});
+    request.frames = session::Frames::Last;
+    for (const char* filter : {"", "none", "fdf", "nlm", "guided", "bilateral", "statmc:transform=none"}) {
+        request.view.filter = filter;
+        request.stop.error = 0.01;
+        EXPECT_EQ(problem_of(request), "") << filter;
+    }
+    for (const double error :
+         {-0.1, 1e7, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        request.stop.error = error;
+        EXPECT_NE(problem_of(request).find("the error to reach"), std::string::npos) << error;
+    }
+    request.stop.error = 0.01;
+    request.view.filter = "nfor";
+    EXPECT_NE(problem_of(request).find("'nfor' reads 'first_half'"), std::string::npos);
+    request.view.filter = "psvgf";
+    EXPECT_NE(problem_of(request).find("'psvgf' has a history"), std::string::npos);
+    request.view.filter = "fdf";
+    request.stop.noise = 0.1;
+    EXPECT_NE(problem_of(request).find("leave one out"), std::string::npos);
+    request.stop.noise = 0.0;
+    request.frames = session::Frames::All;
+    EXPECT_NE(problem_of(request).find("can stop at a noise or an error"), std::string::npos);
+}
+
 TEST(RequestProblem, RejectsInvalidCameras) {
     constexpr double NaN = std::numeric_limits<double>::quiet_NaN(),
                      Infinity = std::numeric_limits<double>::infinity();

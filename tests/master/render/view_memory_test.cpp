@@ -54,6 +54,14 @@ TEST(ViewMemory, DecisionsOfAdaptiveViewsReadACopyOfTheirFilm) {
     EXPECT_EQ(double(bytes({adaptive})), 2.0 * double(film_bytes(adaptive.view)) + 76.0 * Pixels);
     // One after another.
     EXPECT_EQ(double(bytes({adaptive, adaptive})), 3.0 * double(film_bytes(adaptive.view)) + 76.0 * Pixels);
+    // That of an error also makes the pictures of both halves.
+    session::ViewRequest error = request("fdf");
+    error.stop = {.spp = 1024, .error = 0.1};
+    complete(error);
+    const std::uint64_t film = film_bytes(error.view);
+    const double denoiser = Pixels * bytes_per_pixel("fdf");
+    EXPECT_GT(double(bytes({error})), 2.0 * double(film) + 2.0 * denoiser + 300.0 * Pixels);
+    EXPECT_LT(double(bytes({error})), 2.0 * double(film) + 2.0 * denoiser + 500.0 * Pixels);
     session::ViewRequest live = request("none");
     live.stop = {.spp = 64};
     complete(live);
