@@ -227,6 +227,10 @@ std::string Views::set_filter(const SessionRecord& asker, const std::string& nam
     if (view.request.reproducible) {
         if (const std::string why = filter::why_not_reproducible(*choice->entry); !why.empty()) refuse(why);
     }
+    if (view.request.stop.error > 0.0) {
+        if (const std::string why = filter::why_no_error_estimate(*choice); !why.empty())
+            refuse("the frame ends at an error of its picture, which cannot be estimated: " + why);
+    }
     if (view.request.picture == session::PictureEncoding::None) {
         refuse(
             "the frame's client requested only the film: nothing would be filtered; start it with "

@@ -228,6 +228,34 @@ TEST(AdaptiveViews, GetNoMoreChannels) {
     EXPECT_EQ(result.summary.picture.filter, "gauss");
 }
 
+// The film has a channel of `nfor`, but not that of each half.
+TEST(AdaptiveViews, OfAnErrorGetNoFilterWhoseErrorIsUnknown) {
+    LoopbackCluster cluster;
+    cluster.add_node("null", {}, 5us);
+    const auto session = cluster.batch(std::make_shared<BlobStore>());
+    const auto other = cluster.session(std::make_shared<BlobStore>());
+    session::ViewRequest request = adaptive_request(0.0);
+    request.stop.error = 1e-3;
+    request.view.channels.insert(frame::Channel::Normal);
+    request.view.filter = "gauss:sigma=0.5";
+    request.picture = session::PictureEncoding::Planes;
+    std::string answer, refusal;
+    const auto meddle = [&](const session::ViewProgress& progress) {
+        if (progress.phase != session::Phase::Rendering || progress.samples == 0 || !answer.empty()) return;
+        try {
+            (void)other->set_filter("", "nfor");
+        } catch (const Error& error) {
+            refusal = error.what();
+        }
+        answer = other->set_filter("", "gauss:sigma=0.6");
+    };
+    const client::ViewResult result = client::render(*session, request, meddle, {});
+    EXPECT_EQ(result.summary.outcome, session::Outcome::Complete) << result.summary.message;
+    EXPECT_NE(refusal.find("cannot be estimated"), std::string::npos) << refusal;
+    EXPECT_EQ(result.summary.picture.filter, "gauss:sigma=0.6");
+    EXPECT_GT(result.summary.error, 0.0);
+}
+
 // A job of noise, with a master that keeps its sessions in a folder.
 struct AdaptiveJobs : testing::Test {
     std::filesystem::path folder =
