@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "master/filter/catalog.h"
+#include "master/render/adaptive/filtered_error.h"
 #include "mediator/filter/choice.h"
 #include "mediator/net/channel.h"
 
@@ -134,7 +135,7 @@ void complete(session::ViewRequest& request) {
     if (!request.has_steps()) return;
     request.view.channels.insert(frame::Channel::Radiance);
     request.view.channels.insert(frame::Channel::BlockVariance);
-    if (request.stop.error > 0.0) request.view.channels.insert(frame::Channel::FirstHalf);
+    if (request.stop.error > 0.0) request.view.channels = request.view.channels | ErrorEstimateChannels;
 }
 
 view::View feature_view(const view::View& view) {

@@ -256,11 +256,12 @@ TEST(AdaptiveViews, OfAnErrorGetNoFilterWhoseErrorIsUnknown) {
     EXPECT_GT(result.summary.error, 0.0);
 }
 
-// A job of noise, with a master that keeps its sessions in a folder.
+// A job of noise or error, with a master that keeps its sessions in a folder.
 struct AdaptiveJobs : testing::Test {
     std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("tessera-adaptive-jobs-" + std::to_string(::getpid()));
     std::unique_ptr<LoopbackCluster> cluster;
+    double noise = Noise, error = 0.0;
     AdaptiveJobs() { std::filesystem::remove_all(folder); }
     ~AdaptiveJobs() override {
         cluster.reset();
@@ -274,7 +275,9 @@ struct AdaptiveJobs : testing::Test {
         cluster->add_node("null", {}, cost);
     }
     void submit() {
-        session::ViewRequest request = adaptive_request(Noise);
+        session::ViewRequest request = adaptive_request(noise);
+        request.stop.error = error;
+        if (error > 0.0) request.view.filter = "gauss:sigma=0.5";
         request.name = "night";
         request.film = false;
         request.frames = session::Frames::Last;
@@ -330,6 +333,25 @@ TEST_F(AdaptiveJobs, GoOnAfterMasterRestartsWithTheBitsOfOneRun) {
         for (const session::NodeSummary& node : summary.nodes) later += node.samples;
         EXPECT_LT(double(later), (1.15 - restarts.back()) * double(expected.samples)) << "the film was kept";
     }
+}
+
+TEST_F(AdaptiveJobs, OfAnErrorGoOnAfterAMasterRestartsWithTheBitsOfOneRun) {
+    noise = 0.0;
+    error = 1e-3;
+    start({});
+    submit();
+    const session::ViewSummary expected = wait_for_end().summary;
+    const client::ViewResult whole = fetch();
+    ASSERT_GT(expected.steps, 1u);
+    start(5us);
+    submit();
+    (void)wait(
+        [&](const session::JobStatus& job) { return job.progress.samples >= expected.samples * 6 / 10; });
+    start(5us);
+    const session::ViewSummary summary = wait_for_end().summary;
+    EXPECT_EQ(summary.samples, expected.samples);
+    EXPECT_EQ(summary.error, expected.error);
+    EXPECT_EQ(fetch().frame.picture, whole.frame.picture);
 }
 
 }  // namespace

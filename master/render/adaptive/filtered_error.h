@@ -2,7 +2,7 @@
 
 #include <tbb/task_arena.h>
 
-#include <string>
+#include <span>
 #include <vector>
 
 #include "master/render/adaptive/step.h"
@@ -16,7 +16,8 @@ namespace tessera::master {
 inline constexpr frame::ChannelSet ErrorEstimateChannels{
     frame::Channel::Radiance, frame::Channel::BlockVariance, frame::Channel::FirstHalf};
 
-// Error of the picture that a filter makes of half of a film's samples: its variance and its bias. That of all samples is smaller.
+// Error of the picture that a filter makes of half of a film's samples: its variance and its bias. That of all samples is
+// smaller, but light that was not found yet is missing in it.
 //
 // The filter runs on each half. With filtered pictures F, G and unfiltered ones U, V of the two halves, which have independent
 // errors, the expectation of ((F + G) / 2)^2 - F V - G U + U V is the squared error of (F + G) / 2, and that of (F - G)^2 / 4 is the
@@ -55,8 +56,8 @@ struct ErrorGoal {
 // one, which falls more slowly.
 double part_to_reach(double wanted, double error);
 
-// next_step(), whatever settings.noise and settings.part are, until the filtered picture has the wanted error; dealt to pixels in which the
-// filtered picture has it. Of unfiltered pictures, that is their noise. Throws Error if the filter cannot run.
+// next_step() to the wanted error of the filtered picture, for the pixels where that has its error; settings.noise and settings.part are
+// not read. Of unfiltered pictures the error is their squared noise. Throws Error if the filter cannot run.
 Step next_step_to(const ErrorGoal& goal, const frame::FilmTile& film, std::span<const std::uint8_t> doublings,
                   std::span<const Rect> tiles, AdaptiveSettings settings, tbb::task_arena& arena);
 

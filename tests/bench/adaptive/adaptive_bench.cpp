@@ -77,7 +77,7 @@ class AdaptiveMeasurement {
     view::View view(std::uint64_t seed) const {
         frame::ChannelSet channels = AdaptiveChannels;
         if (plan_.filter) channels = channels | filter::wanted_channels(*plan_.filter, {});
-        if (!plan_.errors.empty()) channels.insert(frame::Channel::FirstHalf);
+        if (!plan_.errors.empty()) channels = channels | master::ErrorEstimateChannels;
         const auto path_class =
             plan_.filter ? plan_.filter->entry->description.path_class : view::PathClass::Indirect;
         view::View view = sampler_.view(plan_.size.width, plan_.size.height, channels, path_class, seed);

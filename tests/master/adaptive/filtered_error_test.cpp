@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "master/filter/catalog.h"
+#include "mediator/base/random.h"
 #include "mediator/filter/inputs.h"
 #include "mediator/picture/metrics.h"
 #include "tests/filter/synthetic.h"
@@ -95,6 +96,30 @@ TEST_F(FilteredErrors, AreFiniteWithoutLightAndWithHoles) {
     const std::uint32_t plane = bright.channels.first_plane(frame::Channel::Radiance);
     for (std::uint32_t c = 0; c < 3; ++c) bright.plane(plane + c)[100] = 1e18f;
     EXPECT_TRUE(std::isfinite(estimate("fdf", bright)));
+}
+
+// All pixels are as noisy, but on the right no two have the same surface.
+TEST_F(FilteredErrors, SendSamplesToWhatTheFilterLeavesNoisy) {
+    const frame::FilmTile of = filter::synthetic_film(
+        Width, Height, 16, filter::EveryChannel, [](std::uint32_t x, std::uint32_t y, std::uint64_t sample) {
+            filter::SyntheticSample value;
+            CounterRandom light(y * Width + x, sample), surface(9, y * Width + x);
+            value.high.fill(0.5f + light.uniform());
+            if (x >= Width / 2) {
+                const float angle = 6.28f * surface.uniform();
+                value.normal = {std::cos(angle), std::sin(angle), 0.0f};
+            }
+            return value;
+        });
+    view::View view = filter::synthetic_view(Width, Height);
+    view.filter = "bilateral";
+    const std::vector<Rect> tiles{{0, 0, Width / 2, Height}, {Width / 2, 0, Width / 2, Height}};
+    const double error = estimate("bilateral", of);
+    const Step step = next_step_to({view, 0.7 * error}, of, std::vector<std::uint8_t>(of.pixel_count(), 4),
+                                   tiles, {.max_samples = 1024}, arena);
+    ASSERT_EQ(step.rounds.size(), 1u);
+    const auto& masks = *step.rounds.front().masks;
+    EXPECT_GT(masks[1].pixels, 4 * masks[0].pixels);
 }
 
 TEST_F(FilteredErrors, OfAGoalEndItsSteps) {
