@@ -141,6 +141,7 @@ TEST_F(FilteredErrors, OfAGoalEndItsSteps) {
     EXPECT_EQ(next("fdf", 0.5 * error).error, error);
     EXPECT_FALSE(next("fdf", 0.5 * error).rounds.empty());
     EXPECT_TRUE(next("fdf", 1.01 * error).rounds.empty());
+    EXPECT_EQ(next("fdf", 1.01 * error).samples_expected, 16u * of.pixel_count()) << "it has ended";
     // Without a filter it is the noise.
     const Step unfiltered = next("", 1e-4);
     EXPECT_EQ(unfiltered.error, unfiltered.noise * unfiltered.noise);
