@@ -207,6 +207,8 @@ int GlbNodes::camera(ObjectId id) {
         result.perspective.yfov = camera.vertical_fov;
         result.perspective.aspectRatio = camera.aspect_ratio;  // 0 is not written
         result.perspective.znear = 0.01;
+        // The library writes 0 where there is none, which is invalid: Blender shows black.
+        result.perspective.zfar = 1e6;
     }
     if (auto plain = import::camera_of(result)) {
         plain->name = camera.name;

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cstdlib>
+#include <fstream>
 #include <glm/geometric.hpp>
 
 #include "client/export/export.h"
@@ -183,6 +185,24 @@ TEST(GlbExport, EverythingThatGltfSupportsIsRestored) {
     ASSERT_EQ(imported.cameras.size(), 1u);
     EXPECT_EQ(imported.cameras[0].camera.vertical_fov, 0.123456789);
     EXPECT_EQ(imported.cameras[0].camera.aspect_ratio, 1.5);
+}
+
+// glTF requires 0 < znear < zfar; Blender shows nothing otherwise.
+TEST(GlbExport, CamerasHaveValidClippingPlanes) {
+    RichScene rich;
+    make_rich(rich);
+    const import::TestFolder folder;
+    const std::filesystem::path file = folder.path() / "clipping.glb";
+    ASSERT_TRUE(write_glb(rich.scene, rich.blobs, file));
+    std::ifstream stream(file, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+    // The JSON chunk is the first one. All our cameras' lenses are in it.
+    const auto number = [&](const std::string& name) {
+        const std::size_t at = bytes.find("\"" + name + "\":");
+        return at == std::string::npos ? 0.0 : std::strtod(bytes.c_str() + at + name.size() + 3, nullptr);
+    };
+    EXPECT_GT(number("znear"), 0.0);
+    EXPECT_GT(number("zfar"), number("znear"));
 }
 
 TEST(GlbExport, UnsupportedPropertiesAreReported) {
