@@ -10,6 +10,7 @@
 #include "tests/bench/filters/pictures.h"
 #include "tests/bench/live/displays_command.h"
 #include "tests/bench/live/live_command.h"
+#include "tests/bench/transport/transport_command.h"
 #include "tests/bench/variance/variance_command.h"
 
 namespace tessera::tools::bench {
@@ -18,10 +19,11 @@ Command bench_command(cli::CommandLine& program) {
     cli::CommandLine& line =
         program.command("bench",
                         "Benchmarks: adaptive sampling, error, time and consistency of denoisers, accuracy "
-                        "of variances, back-ends, edits and displays.");
+                        "of variances, light transport, back-ends, edits and displays.");
     const std::vector<Command> commands{
-        adaptive_command(line), backends_command(line), consistency_command(line), displays_command(line),
-        filters_command(line),  live_command(line),     pictures_command(line),    variance_command(line)};
+        adaptive_command(line), backends_command(line),  consistency_command(line),
+        displays_command(line), filters_command(line),   live_command(line),
+        pictures_command(line), transport_command(line), variance_command(line)};
     return {"bench", [commands](std::string_view chosen) {
                 const auto command = std::ranges::find(commands, chosen, &Command::name);
                 try {

@@ -8,8 +8,6 @@
 namespace tessera::tools::bench {
 namespace {
 
-const BenchProgress Quiet{[](const std::string&) {}, [](const std::string&) {}};
-
 struct BenchAdaptive : testing::Test {
     std::filesystem::path references =
         std::filesystem::temp_directory_path() / ("tessera-bench-adaptive-" + std::to_string(::getpid()));
@@ -19,7 +17,7 @@ struct BenchAdaptive : testing::Test {
         const auto scene = load_scene("grids", "");
         EXPECT_TRUE(scene);
         tbb::task_arena arena(2);
-        return measure_adaptive(*scene, plan, arena, Quiet, stop);
+        return measure_adaptive(*scene, plan, arena, SilentProgress, stop);
     }
 };
 

@@ -14,8 +14,6 @@
 namespace tessera::tools::bench {
 namespace {
 
-const BenchProgress NoProgress{[](const std::string&) {}, [](const std::string&) {}};
-
 ConsistencyPlan plan(const std::filesystem::path& folder, std::initializer_list<const char*> filters) {
     ConsistencyPlan plan{
         .references = folder, .spp = {4, 16}, .reference_spp = 256, .size = {48, 27}, .seeds = 2};
@@ -30,7 +28,7 @@ TEST(BenchConsistency, FindsThatABlurKeepsNoPromise) {
     ASSERT_TRUE(scene);
     tbb::task_arena arena(2);
     const auto measured =
-        measure_consistency(*scene, plan(folder, {"none", "gauss:sigma=6"}), arena, NoProgress, {});
+        measure_consistency(*scene, plan(folder, {"none", "gauss:sigma=6"}), arena, SilentProgress, {});
     ASSERT_TRUE(measured);
     ASSERT_EQ(measured->cells.size(), 4u);
     for (const ConsistencyCell& cell : measured->cells) {
@@ -52,7 +50,8 @@ TEST(BenchConsistency, FindsThatABlurKeepsNoPromise) {
     EXPECT_TRUE(measured->slopes.empty()) << "none has 256 samples";
     std::stop_source stop;
     stop.request_stop();
-    EXPECT_FALSE(measure_consistency(*scene, plan(folder, {"none"}), arena, NoProgress, stop.get_token()));
+    EXPECT_FALSE(
+        measure_consistency(*scene, plan(folder, {"none"}), arena, SilentProgress, stop.get_token()));
     std::filesystem::remove_all(folder);
 }
 

@@ -326,8 +326,7 @@ TEST(BenchFilters, StopEndsTheRun) {
     ASSERT_TRUE(plan);
     std::stop_source stop;
     stop.request_stop();
-    const BenchProgress quiet{.say = [](const std::string&) {}, .warn = [](const std::string&) {}};
-    EXPECT_FALSE(run_bench(*plan, quiet, stop.get_token()));
+    EXPECT_FALSE(run_bench(*plan, SilentProgress, stop.get_token()));
 }
 
 }  // namespace

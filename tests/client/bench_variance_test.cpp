@@ -7,14 +7,12 @@
 namespace tessera::tools::bench {
 namespace {
 
-const BenchProgress Silent{[](const std::string&) {}, [](const std::string&) {}};
-
 VarianceScene measured(const std::string& name, std::uint32_t seeds) {
     const auto scene = load_scene(name, "");
     EXPECT_TRUE(scene);
     tbb::task_arena arena(2);
     const VariancePlan plan{.spp = {4, 16, 64}, .size = {64, 32}, .seeds = seeds};
-    return *measure_variances(*scene, plan, arena, Silent, {});
+    return *measure_variances(*scene, plan, arena, SilentProgress, {});
 }
 
 // Direct light is stratified: as if samples were independent, its error is overestimated ever more.
@@ -52,7 +50,7 @@ TEST(BenchVariance, StopsOnRequest) {
     std::stop_source stop;
     stop.request_stop();
     const VariancePlan plan{.spp = {4}, .size = {32, 32}, .seeds = 4};
-    EXPECT_FALSE(measure_variances(*scene, plan, arena, Silent, stop.get_token()));
+    EXPECT_FALSE(measure_variances(*scene, plan, arena, SilentProgress, stop.get_token()));
 }
 
 }  // namespace

@@ -112,8 +112,7 @@ TEST_P(FullConsistency, EveryPromiseIsKeptButKnownOnes) {
     std::erase_if(kept, [](const std::string& line) { return !line.starts_with(GetParam() + ", "); });
     const auto scene = load_scene(GetParam(), plan.assets);
     ASSERT_TRUE(scene) << scene.error().what();
-    const auto measured = measure_consistency(
-        *scene, plan, arena, {.say = [](const std::string&) {}, .warn = [](const std::string&) {}}, {});
+    const auto measured = measure_consistency(*scene, plan, arena, SilentProgress, {});
     ASSERT_TRUE(measured);
     for (const std::string& line : broken_promises(*measured)) {
         std::cout << line << std::endl;

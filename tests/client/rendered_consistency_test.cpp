@@ -30,8 +30,7 @@ TEST(RenderedConsistency, NeverFivePercentWorseThanNoFilterInRenderedRooms) {
     ASSERT_TRUE(plan) << plan.error().what();
     plan->path_spp.clear();
     plan->measures_speed = false;
-    const auto results =
-        run_bench(*plan, {.say = [](const std::string&) {}, .warn = [](const std::string&) {}}, {});
+    const auto results = run_bench(*plan, SilentProgress, {});
     ASSERT_TRUE(results);
     bool blur_was_worse = false;
     int checked = 0;

@@ -21,10 +21,12 @@ backend::Capabilities renderer() {
 }
 
 Sampler::Sampler(const BenchScene& scene, tbb::task_arena& arena)
+    : Sampler(scene, arena, backend::catalog().front()) {}
+
+Sampler::Sampler(const BenchScene& scene, tbb::task_arena& arena, const backend::BackendEntry& entry)
     : arena_(arena), camera_(scene.camera), max_bounces_(scene.max_bounces) {
     for (const scene::BlobPtr& blob : scene.blobs) blobs_->insert(blob);
-    backend_ = backend::catalog().front().make(
-        {.threads = static_cast<std::uint32_t>(arena.max_concurrency()), .blobs = blobs_});
+    backend_ = entry.make({.threads = static_cast<std::uint32_t>(arena.max_concurrency()), .blobs = blobs_});
     const auto edit = backend_->begin_edit();
     if (auto applied = edit->apply(scene::snapshot(scene.content)); !applied) throw applied.error();
     if (auto committed = edit->commit(); !committed) throw committed.error();
@@ -63,6 +65,7 @@ bool Sampler::grow(GrowingFilm& film, std::uint64_t spp, const std::stop_token& 
     const TimePoint started = clock.now();
     const std::vector<frame::SampleBlock> blocks = frame::aligned_blocks(film.spp_, spp);
     std::atomic<bool> whole = true;
+    std::atomic<std::uint64_t> rays = 0;
     parallel_for(arena_, film.tiles_.size(), [&](std::size_t i) {
         frame::FilmTile& tile = film.tiles_[i];
         for (const frame::SampleBlock& block : blocks) {
@@ -72,6 +75,7 @@ bool Sampler::grow(GrowingFilm& film, std::uint64_t spp, const std::stop_token& 
                 whole = false;
                 return;
             }
+            rays += result.rays;
             if (block.first == 0) {
                 tile = std::move(result.blocks.front());
             } else {
@@ -80,6 +84,7 @@ bool Sampler::grow(GrowingFilm& film, std::uint64_t spp, const std::stop_token& 
         }
     });
     film.spp_ = spp;
+    film.rays_ += rays;
     film.seconds_ += seconds(clock.now() - started);
     return whole;
 }

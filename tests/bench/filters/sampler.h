@@ -16,6 +16,7 @@ class GrowingFilm {
     const view::View& view() const { return view_; }
     std::uint64_t spp() const { return spp_; }
     double seconds() const { return seconds_; }  // wall-clock time of its samples
+    std::uint64_t rays() const { return rays_; }
     frame::FilmTile whole() const;
 
   private:
@@ -23,17 +24,19 @@ class GrowingFilm {
     view::View view_;
     std::uint64_t spp_ = 0;
     double seconds_ = 0.0;
+    std::uint64_t rays_ = 0;
     std::vector<frame::FilmTile> tiles_;
 };
 
 // Capabilities of the first back-end in the catalog.
 backend::Capabilities renderer();
 
-// That back-end in this process with one scene in it.
+// A back-end in this process with one scene in it.
 class Sampler {
   public:
-    // Throws Error.
+    // The first back-end in the catalog, or another one. Throws Error.
     Sampler(const BenchScene& scene, tbb::task_arena& arena);
+    Sampler(const BenchScene& scene, tbb::task_arena& arena, const backend::BackendEntry& entry);
 
     // With the scene's camera.
     view::View view(std::uint32_t width, std::uint32_t height, frame::ChannelSet channels,

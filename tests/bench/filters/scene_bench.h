@@ -13,6 +13,7 @@ struct BenchProgress {
     std::function<void(const std::string&)> say;   // current activity, on the progress line
     std::function<void(const std::string&)> warn;  // warnings
 };
+inline const BenchProgress SilentProgress{[](const std::string&) {}, [](const std::string&) {}};
 
 // All measurements on one scene. Empty when stopped. Throws Error.
 std::optional<SceneResult> measure_scene(const BenchScene& scene, const BenchPlan& plan,

@@ -1,6 +1,7 @@
 #include "tests/bench/scenes/built_in_scenes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <span>
@@ -46,14 +47,17 @@ class Builder {
         root_.children.push_back(add(std::move(geometry)));
     }
 
-    BenchScene finish(BenchScene scene, glm::dvec3 eye, glm::dvec3 target, double vertical_fov) {
+    BenchScene finish(BenchScene scene, glm::dvec3 eye, glm::dvec3 target, double vertical_fov,
+                      float background = 0.0f) {
         const glm::dvec3 z = glm::normalize(eye - target);
         const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(0.0, 1.0, 0.0), z));
         scene.camera = {.name = "camera",
                         .world_from_camera = {glm::dvec4(x, 0.0), glm::dvec4(glm::cross(z, x), 0.0),
                                               glm::dvec4(z, 0.0), glm::dvec4(eye, 1.0)},
                         .camera = {.vertical_fov = vertical_fov}};
-        root_.background = add(scene::Background{.name = "dark"});
+        root_.background =
+            add(background > 0.0f ? scene::Background{.name = "furnace", .color = glm::vec3(background)}
+                                  : scene::Background{.name = "dark"});
         entries_.push_back(scene::Create{scene::RootId, root_});
         if (auto applied = scene.content.apply_entries(entries_); !applied) throw applied.error();
         scene.content.set_version({1, 1});
@@ -153,6 +157,58 @@ BenchScene grids() {
                           {2.6, 3.1, 3.4}, {0.0, 0.35, 0.0}, 0.66);
 }
 
+BenchScene furnace() {
+    Builder builder;
+    for (int i = 0; i < 4; ++i) {
+        const float x = -1.65f + 1.1f * float(i);
+        builder.add_mesh("plastic " + std::to_string(i + 1), sphere({x, 0.55f, 0.0f}, 0.5f, 48),
+                         builder.material({.base_color = glm::vec4(0.8f, 0.8f, 0.8f, 1.0f),
+                                           .roughness = 0.1f + 0.3f * float(i)}));
+        builder.add_mesh("metal " + std::to_string(i + 1), sphere({x, -0.55f, 0.0f}, 0.5f, 48),
+                         builder.material({.base_color = glm::vec4(0.9f, 0.9f, 0.9f, 1.0f),
+                                           .metallic = 1.0f,
+                                           .roughness = 0.1f + 0.3f * float(i)}));
+    }
+    return builder.finish({.name = "furnace",
+                           .kind = "uniform light",
+                           .summary = "plastic and metal of four roughnesses under an even sky"},
+                          {0.0, 0.0, 6.0}, {0.0, 0.0, 0.0}, 0.5, 1.0f);
+}
+
+// After Veach: plates of growing roughness that mirror lights of growing size and equal power.
+BenchScene glossy() {
+    Builder builder;
+    builder.add_mesh("floor and wall", quad({-4, 0, 4}, {4, 0, 4}, {4, 0, -2}, {-4, 0, -2}),
+                     builder.diffuse({0.4f, 0.4f, 0.4f}));
+    builder.add_mesh("wall", quad({-4, 0, -2}, {4, 0, -2}, {4, 5, -2}, {-4, 5, -2}),
+                     builder.diffuse({0.4f, 0.4f, 0.4f}));
+    const glm::vec3 eye(0.0f, 2.0f, 7.0f), lights(0.0f, 3.2f, -1.0f);
+    for (int i = 0; i < 4; ++i) {
+        const glm::vec3 centre(0.0f, 0.25f + 0.35f * float(3 - i), 1.6f - 0.7f * float(3 - i));
+        const glm::vec3 normal =
+            glm::normalize(glm::normalize(eye - centre) + glm::normalize(lights - centre));
+        const glm::vec3 across(1.8f, 0.0f, 0.0f),
+            along = 0.28f * glm::cross(normal, glm::vec3(1.0f, 0.0f, 0.0f));
+        builder.add_mesh(
+            "plate " + std::to_string(i + 1),
+            quad(centre - across - along, centre - across + along, centre + across + along,
+                 centre + across - along),
+            builder.material({.base_color = glm::vec4(0.8f, 0.8f, 0.8f, 1.0f),
+                              .metallic = 1.0f,
+                              .roughness = std::array{0.1f, 0.2f, 0.35f, 0.5f}[std::size_t(i)]}));
+    }
+    for (int i = 0; i < 3; ++i) {
+        const float radius = std::array{0.04f, 0.13f, 0.4f}[std::size_t(i)];
+        builder.add_mesh("lamp " + std::to_string(i + 1),
+                         sphere(lights + glm::vec3(1.2f * float(i - 1), 0.0f, 0.0f), radius, 24),
+                         builder.light(1.0f / (radius * radius)));
+    }
+    return builder.finish({.name = "glossy",
+                           .kind = "glossy surfaces",
+                           .summary = "metal plates that mirror lamps of three sizes"},
+                          {eye.x, eye.y, eye.z}, {0.0, 1.4, 0.0}, 0.5);
+}
+
 }  // namespace
 
 BenchScene balls(std::uint32_t triangles) {
@@ -180,7 +236,8 @@ BenchScene balls(std::uint32_t triangles) {
 
 const std::vector<BuiltIn>& built_in_scenes() {
     static const std::vector<BuiltIn> scenes{
-        {"cornell", cornell}, {"cornell-spheres", cornell_spheres}, {"caustics", caustics}, {"grids", grids}};
+        {"cornell", cornell}, {"cornell-spheres", cornell_spheres}, {"caustics", caustics},
+        {"grids", grids},     {"furnace", furnace, false},          {"glossy", glossy, false}};
     return scenes;
 }
 

@@ -14,9 +14,12 @@ namespace tessera::tools::bench {
 //   grids            two layers of bars over a plane under a square light, direct light only (GRIDS, Mehta
 //                    ch. 3, whose sizes are not printed): light of 2 sigma = 1 m at d1 = 4 m over a plane of
 //                    6 m, layers at 0.4 m and 1.5 m; penumbrae sigma (d1 / d2 - 1) of 0.06 m and 0.3 m
+//   furnace          spheres of plastic and metal under an even sky
+//   glossy           metal plates of growing roughness and lamps of growing size (Veach)
 struct BuiltIn {
     std::string_view name;
     BenchScene (*make)();
+    bool is_default = true;  // in the default list; `bench transport` has all
 };
 const std::vector<BuiltIn>& built_in_scenes();
 

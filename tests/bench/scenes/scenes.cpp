@@ -45,7 +45,11 @@ Expected<std::uint32_t> ball_triangles(const std::string& name) {
 Expected<BenchScene> import_file(const SceneFile& wanted, const fs::path& path, const fs::path& environment) {
     auto imported = import::import_scene(path, {.environment = environment});
     if (!imported) return tl::unexpected(imported.error());
-    BenchScene scene{.name = wanted.name, .kind = wanted.kind, .summary = wanted.summary};
+    BenchScene scene{.name = wanted.name,
+                     .kind = wanted.kind,
+                     .summary = wanted.summary,
+                     .file = path,
+                     .environment = environment};
     scene.camera = imported->cameras.front();
     if (auto applied = scene.content.apply_entries(import::entries(*imported, import::RootEntry::Create));
         !applied) {
@@ -64,7 +68,9 @@ std::vector<std::string> scene_names(const fs::path& assets) {
         const bool lit = *file.environment == '\0' || fs::exists(assets / file.environment);
         if (lit && fs::exists(assets / file.file)) names.emplace_back(file.name);
     }
-    for (const BuiltIn& scene : built_in_scenes()) names.emplace_back(scene.name);
+    for (const BuiltIn& scene : built_in_scenes()) {
+        if (scene.is_default) names.emplace_back(scene.name);
+    }
     return names;
 }
 
@@ -73,7 +79,9 @@ Expected<std::vector<std::string>> choose_scenes(const std::string& list, const 
     if (list.empty()) return known;
     std::vector<std::string> chosen = split_list(list);
     for (const std::string& name : chosen) {
-        const bool is_known = std::find(known.begin(), known.end(), name) != known.end();
+        const bool is_known =
+            std::ranges::find(known, name) != known.end() ||
+            std::ranges::find(built_in_scenes(), name, &BuiltIn::name) != built_in_scenes().end();
         if (is_known || fs::exists(name)) continue;
         if (name.starts_with(Balls) && ball_triangles(name)) continue;
         return tl::unexpected(load_scene(name, assets).error());

@@ -16,6 +16,7 @@ struct BenchScene {
     std::vector<scene::BlobPtr> blobs;
     import::CameraInfo camera;
     std::uint32_t max_bounces = 8;
+    std::filesystem::path file, environment;  // that it was imported from; empty: built-in
 };
 
 // The default list of scene names: existing files of the folder `assets`, then the built-in ones.

@@ -1,0 +1,108 @@
+// Error over samples and time: what the page is made of.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/bench/scenes/scenes.h"
+#include "tests/bench/transport/transport_bench.h"
+#include "tests/bench/transport/transport_report.h"
+
+namespace tessera::tools::bench {
+namespace {
+
+struct References {
+    const std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("tessera-bench-transport-" + std::to_string(::getpid()));
+    ~References() { std::filesystem::remove_all(path); }
+};
+
+// relMSE of `error` at one sample, falling with the power `slope`; `seconds` for each sample.
+TransportCurve curve(const std::string& renderer, double error, double falls, double seconds) {
+    TransportCurve result{.renderer = renderer, .points = {}};
+    for (const std::uint64_t spp : {1, 2, 4, 8, 16}) {
+        TransportPoint point{.spp = spp, .seconds = seconds * double(spp)};
+        point.relmse.value = error * std::pow(double(spp), falls);
+        result.points.push_back(point);
+    }
+    return result;
+}
+
+TEST(BenchTransport, MeasuresHowFastTheErrorFalls) {
+    EXPECT_NEAR(slope(curve("a", 0.3, -1.25, 1.0), 1), -1.25, 1e-12);
+    EXPECT_NEAR(slope(curve("a", 0.3, -1.25, 1.0), 4), -1.25, 1e-12);
+    EXPECT_EQ(slope(curve("a", 0.3, -1.25, 1.0), 16), 0.0) << "one point";
+    TransportCurve late = curve("a", 0.3, -1.0, 1.0);
+    late.points[0].relmse.value = 100.0;
+    late.points[4].relmse.value = -1e-9;  // below what the references resolve
+    EXPECT_NEAR(slope(late, 2), -1.0, 1e-12);
+}
+
+TEST(BenchTransport, ComparesTimesToEqualError) {
+    const TransportCurve ours = curve("embree", 0.2, -1.0, 0.5), theirs = curve("cycles", 0.4, -1.0, 1.0);
+    EXPECT_NEAR(time_to_equal_error(ours, theirs), 0.25, 1e-12);
+    EXPECT_EQ(time_to_equal_error(ours, {.renderer = "cycles", .points = {}}), 0.0);
+    const std::vector<TransportScene> scenes{
+        {.name = "a", .kind = "", .summary = "", .curves = {ours, theirs}},
+        {.name = "b", .kind = "", .summary = "", .curves = {curve("embree", 0.4, -1.0, 1.0), theirs}},
+        {.name = "without cycles", .kind = "", .summary = "", .curves = {ours}}};
+    EXPECT_NEAR(mean_time_to_equal_error(scenes, "embree"), 0.5, 1e-12);
+    EXPECT_EQ(mean_time_to_equal_error(scenes, "vulkan"), 0.0);
+}
+
+TEST(BenchTransport, MeasuresARealScene) {
+    const References folder;
+    const auto scene = load_scene("cornell", "");
+    ASSERT_TRUE(scene);
+    tbb::task_arena arena(2);
+    const TransportPlan plan{.references = folder.path,
+                             .scenes = {"cornell"},
+                             .backends = {"embree"},
+                             .spp = {1, 4, 16},
+                             .reference_spp = 64,
+                             .size = {48, 32},
+                             .seeds = 2,
+                             .jobs = 2};
+    const auto measured = measure_transport(*scene, plan, arena, SilentProgress, {});
+    ASSERT_TRUE(measured);
+    ASSERT_EQ(measured->curves.size(), 1u);
+    const std::vector<TransportPoint>& points = measured->curves[0].points;
+    ASSERT_EQ(points.size(), 3u);
+    for (const TransportPoint& point : points) {
+        EXPECT_NEAR(point.light, 1.0, 5.0 * point.light_deviation) << point.spp;
+        EXPECT_GT(point.rays, 2.0) << "a camera ray and a shadow ray at least";
+        EXPECT_LT(point.rays, 20.0);
+        EXPECT_GT(point.flip, 0.0);
+    }
+    EXPECT_LT(points[2].relmse.value, 0.4 * points[0].relmse.value);
+    EXPECT_LT(points[2].light_deviation, points[0].light_deviation);
+    EXPECT_GT(measured->curves[0].first_picture_seconds, 0.0);
+
+    const auto json = nlohmann::json::parse(transport_json({*measured}, plan));
+    EXPECT_EQ(json["scenes"][0]["curves"][0]["points"].size(), 3u);
+    EXPECT_TRUE(json["mean_time_to_equal_error_over_cycles"]["embree"].is_null()) << "Cycles did not run";
+    EXPECT_NE(transport_html({*measured}, plan).find("<svg viewBox"), std::string::npos);
+    EXPECT_NE(transport_svg({*measured}).find("xmlns"), std::string::npos);
+    EXPECT_NE(transport_text(*measured, plan).find("embree"), std::string::npos);
+}
+
+TEST(BenchTransport, StopsOnRequest) {
+    const References folder;
+    const auto scene = load_scene("cornell", "");
+    tbb::task_arena arena(2);
+    std::stop_source stop;
+    stop.request_stop();
+    const TransportPlan plan{.references = folder.path,
+                             .backends = {"embree"},
+                             .spp = {1},
+                             .reference_spp = 4,
+                             .size = {16, 16},
+                             .seeds = 1,
+                             .jobs = 2};
+    EXPECT_FALSE(measure_transport(*scene, plan, arena, SilentProgress, stop.get_token()));
+}
+
+}  // namespace
+}  // namespace tessera::tools::bench
