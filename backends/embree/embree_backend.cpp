@@ -8,6 +8,7 @@
 #include "backends/embree/scene_adapter.h"
 #include "mediator/backend/path_log.h"
 #include "mediator/backend/sample_loop.h"
+#include "mediator/backend/sky_cells_cache.h"
 #include "mediator/frame/merge.h"
 #include "mediator/shading/sample_values.h"
 
@@ -44,7 +45,10 @@ class EmbreeBackend final : public Backend {
         require_renderer(view::TracingRenderers, view);
         const std::shared_lock lock(mutex_);
         if (unit.version != adapter_.version()) return {};
-        const PathTracer tracer(adapter_.tables(), adapter_.scene(), view);
+        PathTracer tracer(adapter_.tables(), adapter_.scene(), view);
+        const auto sky_cells = sky_cells_of(tracer, view, unit.block.end(), stop);
+        if (sky_cells == nullptr) return {.status = RenderStatus::Stopped};
+        tracer.use_sky_cells(*sky_cells, view.sky_cells_from);
         return render_samples(unit, view.channels, [&](frame::FilmTile& tile, std::uint64_t& rays) {
             return fill(tile, tracer, rays, stop);
         });
@@ -54,7 +58,9 @@ class EmbreeBackend final : public Backend {
                                    std::uint64_t sample) override {
         require_renderer(view::TracingRenderers, view);
         const std::shared_lock lock(mutex_);
-        const PathTracer tracer(adapter_.tables(), adapter_.scene(), view);
+        PathTracer tracer(adapter_.tables(), adapter_.scene(), view);
+        const auto sky_cells = sky_cells_of(tracer, view, sample + 1, {});
+        tracer.use_sky_cells(*sky_cells, view.sky_cells_from);
         std::vector<std::string> path_log;
         std::uint64_t rays = 0;
         const PathSample found = tracer.trace(x, y, sample, rays, &path_log);
@@ -80,6 +86,16 @@ class EmbreeBackend final : public Backend {
         std::unique_lock<std::shared_mutex> lock_;
     };
 
+    // Empty ones if no sample before `end` needs any; nullptr: stopped.
+    std::shared_ptr<const SkyCells> sky_cells_of(const PathTracer& tracer, const view::View& view,
+                                                 std::uint64_t end, const std::stop_token& stop) {
+        if (end <= view.sky_cells_from || view.renderer != view::Renderer::PathTracing) return no_sky_cells_;
+        return sky_cells_.find(adapter_.version(), view, [&]() -> std::shared_ptr<const SkyCells> {
+            std::optional<SkyCells> made = tracer.make_sky_cells(settings_.threads, stop);
+            return made ? std::make_shared<const SkyCells>(std::move(*made)) : nullptr;
+        });
+    }
+
     static bool fill(frame::FilmTile& tile, const PathTracer& tracer, std::uint64_t& rays,
                      const std::stop_token& stop) {
         return for_each_pixel(tile, stop, [&](std::size_t pixel, std::int32_t x, std::int32_t y) {
@@ -91,6 +107,8 @@ class EmbreeBackend final : public Backend {
     }
 
     const BackendSettings settings_;
+    const std::shared_ptr<const SkyCells> no_sky_cells_ = std::make_shared<const SkyCells>();
+    SkyCellsCache<SkyCells> sky_cells_;
     DeviceHandle device_;
     mutable std::shared_mutex mutex_;  // shared by renders, exclusive for edits; protects the adapter
     SceneAdapter adapter_;

@@ -35,6 +35,7 @@ void log_miss(const NoPathLog&) {}
 void log_emission(const NoPathLog&, const glm::vec3&, const glm::vec3&) {}
 void log_light(const NoPathLog&, const glm::vec3&, const glm::vec3&) {}
 void log_specular(const NoPathLog&, bool, const glm::vec3&) {}
+void log_receiver(const NoPathLog&, const shading::Receiver&, const shading::Ray&) {}
 
 constexpr bool has_specular_trees(const NoPathLog&) {
     return true;

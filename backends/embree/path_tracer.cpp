@@ -9,7 +9,8 @@ namespace tessera::embree {
 
 PathTracer::PathTracer(const backend::SceneTables& tables, RTCScene top, const view::View& view,
                        Strategy strategy)
-    : scene_(backend::on_host(tables)),
+    : tables_(tables),
+      scene_(backend::on_host(tables)),
       camera_keys_(backend::camera_keys(view.camera, tables.render_origin)),
       view_(backend::make_view(view, tables.render_origin)),
       top_(top) {
@@ -28,6 +29,25 @@ PathSample PathTracer::trace(std::uint32_t x, std::uint32_t y, std::uint64_t sam
         shading::trace_sample(Context{{path_log}, {scene_, view_, top_, time}}, x, y, sample);
     rays += path.rays;
     return path.found;
+}
+
+std::optional<backend::SkyCells> PathTracer::make_sky_cells(std::uint32_t threads,
+                                                            const std::stop_token& stop) const {
+    const backend::SkyRays rays{
+        .trace_path =
+            [&](std::uint32_t x, std::uint32_t y, std::uint64_t sample,
+                std::vector<backend::SkyPlace>& places) {
+                const float time = shading::sample_time(scene_.features, view_, x, y, sample);
+                (void)shading::trace_sample(Context{{.sky_places = &places}, {scene_, view_, top_, time}}, x,
+                                            y, sample);
+            },
+        .sees_sky =
+            [&](const backend::SkyPlace& place, const glm::vec3& direction, std::uint32_t number) {
+                bool meets_walls = false;
+                return !trace_occluded(Context{{}, {scene_, view_, top_, 0.0f}}, place.origin, direction,
+                                       shading::infinity(), shading::Sampler(number, 0u), meets_walls);
+            }};
+    return backend::make_sky_cells(tables_, view_, rays, threads, stop);
 }
 
 }  // namespace tessera::embree

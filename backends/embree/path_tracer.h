@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "backends/embree/kernel.h"
+#include "mediator/backend/sky_cells.h"
 #include "mediator/backend/tables/tables.h"
 #include "mediator/shading/paths.h"
 #include "mediator/view/view.h"
@@ -34,6 +35,13 @@ class PathTracer {
     PathSample trace(std::uint32_t x, std::uint32_t y, std::uint64_t sample, std::uint64_t& rays,
                      std::vector<std::string>* path_log = nullptr) const;
 
+    // The sky cells of the view; nullopt: stopped. `threads`: 0 = all cores.
+    std::optional<backend::SkyCells> make_sky_cells(std::uint32_t threads, const std::stop_token& stop) const;
+    // Samples from `first_sample` on use them. They must outlive it at the same address.
+    void use_sky_cells(const backend::SkyCells& cells, std::uint32_t first_sample) {
+        cells.use_in(view_, first_sample);
+    }
+
     const shading::View& view() const { return view_; }
     // Selected by the features of the scene and the view. Tests may set another one, which must support all
     // of them.
@@ -41,6 +49,7 @@ class PathTracer {
     void set_kernel(const Kernel& kernel) { kernel_ = &kernel; }
 
   private:
+    const backend::SceneTables& tables_;
     shading::Scene scene_;
     std::vector<shading::Affine3x4> camera_keys_;
     shading::View view_;

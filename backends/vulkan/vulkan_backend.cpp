@@ -7,7 +7,9 @@
 #include "backends/vulkan/opened_device.h"
 #include "backends/vulkan/probe.h"
 #include "backends/vulkan/scene_adapter.h"
+#include "backends/vulkan/sky_cells.h"
 #include "backends/vulkan/tile_renderer.h"
+#include "mediator/backend/sky_cells_cache.h"
 #include "mediator/backend/tables/media.h"
 #include "mediator/backend/tables/view_record.h"
 #include "mediator/frame/render_revision.h"
@@ -24,7 +26,9 @@ constexpr int Attempts = 3;  // gives up after this many losses in a row
 class VulkanBackend final : public Backend {
   public:
     VulkanBackend(const BackendSettings& settings, const DeviceSettings& device, Trees trees)
-        : opener_(settings, device), adapter_(settings.blobs, settings.cache_folder, trees) {
+        : opener_(settings, device),
+          threads_(settings.threads),
+          adapter_(settings.blobs, settings.cache_folder, trees) {
         opened_ = opener_.open();
         adapter_.move_to(&opened_->device);
         const DeviceInfo& info = opened_->device.info();
@@ -38,7 +42,10 @@ class VulkanBackend final : public Backend {
                          .deterministic = true,
                          .kind = frame::with_render_revision("vulkan " + info.name + ", " + info.driver)};
     }
-    ~VulkanBackend() override { adapter_.move_to(nullptr); }
+    ~VulkanBackend() override {
+        sky_cells_.clear();
+        adapter_.move_to(nullptr);
+    }
 
     Capabilities capabilities() const override { return capabilities_; }
 
@@ -53,7 +60,13 @@ class VulkanBackend final : public Backend {
         require_renderer(capabilities_.renderers, view);
         return on_device([&]() -> RenderResult {
             if (unit.version != adapter_.version()) return {};
-            const shading::View record = record_of(view);
+            shading::View record = record_of(view);
+            std::shared_ptr<const DeviceSkyCells> sky_cells;  // outlives the unit
+            if (unit.block.end() > view.sky_cells_from && record.renderer == shading::RendererPathTracing) {
+                sky_cells = sky_cells_of(view, record, stop);
+                if (sky_cells == nullptr) return {.status = RenderStatus::Stopped};
+                sky_cells->use_in(record, view.sky_cells_from);
+            }
             const bool rasters = record.renderer == shading::RendererRaster;
             const RasterTools tools{opened_->raster, opened_->targets, {}};
             const TileRenderer renderer{opened_->device,
@@ -75,6 +88,12 @@ class VulkanBackend final : public Backend {
                 camera_keys(view.camera, adapter_.tables().render_origin);
             shading::View record = record_of(view);
             record.camera_keys.items = places.data();
+            std::optional<SkyCells> sky_cells;
+            if (sample >= view.sky_cells_from && record.renderer == shading::RendererPathTracing) {
+                sky_cells = make_sky_cells(opened_->device, adapter_.scene(), adapter_.tables(), record,
+                                           threads_, {});
+                sky_cells->use_in(record, view.sky_cells_from);
+            }
             return replay(opened_->device, adapter_.scene(), adapter_.tables(), record, {x, y}, sample);
         });
     }
@@ -103,6 +122,19 @@ class VulkanBackend final : public Backend {
         const bool moves = (adapter_.tables().scene.features & shading::FeatureMotion) != 0;
         if (moves && record.renderer == shading::RendererRaster) record.renderer = shading::RendererWhitted;
         return record;
+    }
+
+    // nullptr: stopped.
+    std::shared_ptr<const DeviceSkyCells> sky_cells_of(const view::View& view, shading::View record,
+                                                       const std::stop_token& stop) {
+        return sky_cells_.find(adapter_.version(), view, [&]() -> std::shared_ptr<const DeviceSkyCells> {
+            const std::vector<shading::Affine3x4> places =
+                camera_keys(view.camera, adapter_.tables().render_origin);
+            record.camera_keys.items = places.data();
+            const std::optional<SkyCells> made =
+                make_sky_cells(opened_->device, adapter_.scene(), adapter_.tables(), record, threads_, stop);
+            return made ? std::make_shared<const DeviceSkyCells>(opened_->device, *made) : nullptr;
+        });
     }
 
     // Runs `work` with the scene on the device, under the shared lock. Reopens a device that was lost, or that
@@ -140,17 +172,20 @@ class VulkanBackend final : public Backend {
     void reopen() {
         ++recoveries_;
         adapter_.move_to(nullptr);
+        sky_cells_.clear();
         opened_.reset();
         opened_ = opener_.open();
         adapter_.move_to(&opened_->device);
     }
 
     const DeviceOpener opener_;
+    const std::uint32_t threads_;
     Capabilities capabilities_;
     mutable std::shared_mutex mutex_;  // shared by renders, exclusive for edits; protects everything below
     std::uint64_t recoveries_ = 0;
     std::unique_ptr<OpenedDevice> opened_;
     SceneAdapter adapter_;
+    SkyCellsCache<DeviceSkyCells> sky_cells_;
 };
 
 }  // namespace

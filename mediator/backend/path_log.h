@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "mediator/backend/sky_cells.h"
+#include "mediator/shading/light_tree.h"
 #include "mediator/shading/surfaces.h"
 
 // The log of a probed path: one line per event at each vertex. The shared transport code calls log_*() with its
@@ -22,7 +24,13 @@ void write_end(PathLog& path_log, const glm::vec3& radiance, std::uint64_t rays)
 // The part of a transport context that logs.
 struct PathLogger {
     PathLog* path_log = nullptr;
+    std::vector<SkyPlace>* sky_places = nullptr;  // where light is sampled
 };
+inline void log_receiver(const PathLogger& context, const shading::Receiver& receiver,
+                         const shading::Ray& ray) {
+    if (context.sky_places != nullptr)
+        context.sky_places->push_back({receiver.position, receiver.normal, ray.origin});
+}
 inline void log_camera(const PathLogger& context, const shading::Ray& ray) {
     if (context.path_log != nullptr) write_camera(*context.path_log, ray);
 }

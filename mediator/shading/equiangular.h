@@ -131,7 +131,7 @@ inline EquiangularSample at_free_flight_point(IN(EquiangularSample) equiangular,
 
 // A receiver along all of the span.
 inline Receiver receiver_along(IN(Span) span) {
-    return Receiver(span.start, vec3(0.0f), span.extent * span.direction);
+    return Receiver(span.start, vec3(0.0f), span.extent * span.direction, NoSkyCell);
 }
 
 inline SpanView seen_from(IN(Scene) scene, IN(Span) span, uint emitter) {
@@ -146,9 +146,9 @@ struct EquiangularWeights {
     float weight;
     float other_probability;
 };
-inline EquiangularWeights equiangular_weights(IN(Scene) scene, uint strategy,
+inline EquiangularWeights equiangular_weights(IN(Scene) scene, IN(View) view,
                                               IN(EquiangularSample) equiangular, IN(LightSample) light,
-                                              IN(Receiver) place, uint layers) {
+                                              IN(Receiver) place) {
     EquiangularWeights weights = EquiangularWeights(1.0f, light.chance);
     if (!equiangular.is_active || light.emitter < 0) return weights;
     const uint emitter = uint(light.emitter);
@@ -156,7 +156,7 @@ inline EquiangularWeights equiangular_weights(IN(Scene) scene, uint strategy,
     Receiver other = receiver_along(equiangular.span);
     if (equiangular.is_equiangular) other = place;
     weights.other_probability = leaf_probability(scene, node, other);
-    if (equiangular.is_equiangular) weights.other_probability *= tree_chance(scene, layers, place);
+    if (equiangular.is_equiangular) weights.other_probability *= tree_chance(scene, view, place);
     float by_equiangular = equiangular.pdf * light.chance,
           by_flight = equiangular.density * weights.other_probability;
     if (!equiangular.is_equiangular) {
@@ -164,7 +164,7 @@ inline EquiangularWeights equiangular_weights(IN(Scene) scene, uint strategy,
                          weights.other_probability;
         by_flight = equiangular.density * light.chance;
     }
-    if (strategy == StrategyEquiangularOnly) by_flight = 0.0f;
+    if (view.strategy == StrategyEquiangularOnly) by_flight = 0.0f;
     const float own = equiangular.is_equiangular ? by_equiangular : by_flight;
     weights.weight = own > 0.0f ? own / (by_equiangular + by_flight) : 0.0f;
     return weights;

@@ -188,7 +188,7 @@ static_assert(offsetof(Environment, column_cdf) == 72);
 static_assert(offsetof(Environment, emits) == 76);
 static_assert(offsetof(Environment, visible_color) == 80);
 static_assert(offsetof(Environment, shows_color) == 96);
-static_assert(offsetof(Environment, unused) == 100);
+static_assert(offsetof(Environment, irradiance_unit) == 100);
 
 static_assert(sizeof(Scene) == 264);
 static_assert(offsetof(Scene, textures) == 0);
@@ -217,7 +217,7 @@ static_assert(offsetof(Scene, environment_light) == 252);
 static_assert(offsetof(Scene, features) == 256);
 static_assert(offsetof(Scene, tree_scale) == 260);
 
-static_assert(sizeof(View) == 176);
+static_assert(sizeof(View) == 200);
 static_assert(offsetof(View, seed) == 0);
 static_assert(offsetof(View, eye) == 8);
 static_assert(offsetof(View, right) == 20);
@@ -246,6 +246,11 @@ static_assert(offsetof(View, camera_key_intervals) == 144);
 static_assert(offsetof(View, containing_media) == 148);
 static_assert(offsetof(View, max_specular_events) == 164);
 static_assert(offsetof(View, clamp_indirect) == 168);
-static_assert(offsetof(View, unused) == 172);
+static_assert(offsetof(View, sky_cells_from) == 172);
+static_assert(offsetof(View, sky_nodes) == 176);
+static_assert(offsetof(View, sky_cells) == 184);
+static_assert(offsetof(View, sky_cdfs) == 192);
+static_assert(sizeof(SkyNode) == 12);
+static_assert(sizeof(SkyCell) == 12);
 
 }  // namespace tessera::shading

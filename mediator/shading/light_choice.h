@@ -2,6 +2,7 @@
 #define TESSERA_MEDIATOR_SHADING_LIGHT_CHOICE_H
 
 #include "mediator/shading/light_tree.h"
+#include "mediator/shading/sky_cells.h"
 
 // Chooses between the light tree and the infinite lights, by the irradiance of each at the receiver if nothing
 // occludes it. An estimate that is far off costs noise, never bias.
@@ -22,8 +23,26 @@ inline bool is_seen(IN(Scene) scene, IN(LightSource) light, uint layers) {
     return (scene.features & FeatureLayers) == 0u || (light.layers & layers) != 0u;
 }
 
-// Of an infinite light; that of the sky is its mean over all directions.
-inline float irradiance_of(IN(LightSource) light, IN(Receiver) receiver) {
+// Whether an infinite light is sampled for a receiver: an even sky is left to BSDF samples where no cell knows its
+// visible parts.
+inline bool is_sampled(IN(Scene) scene, IN(View) view, IN(LightSource) light, IN(Receiver) receiver) {
+    if (light.kind == LightEnvironment && receiver.sky_cell == NoSkyCell && !(light.irradiance > 0.0f))
+        return false;
+    return is_seen(scene, light, view.layers);
+}
+
+inline bool has_sampled_infinite_light(IN(Scene) scene, IN(View) view, IN(Receiver) receiver) {
+    NO_UNROLL
+    for (uint i = scene.tree_light_count; i < scene.light_count; ++i) {
+        if (is_sampled(scene, view, scene.lights.items[i], receiver)) return true;
+    }
+    return false;
+}
+
+// Of an infinite light. That of the sky is what arrives at the receiver's cell, or else its mean over all directions.
+inline float irradiance_of(IN(View) view, IN(LightSource) light, IN(Receiver) receiver) {
+    if (light.kind == LightEnvironment && receiver.sky_cell != NoSkyCell)
+        return view.sky_cells.items[receiver.sky_cell].irradiance;
     if (light.kind == LightEnvironment || receiver.normal == vec3(0.0f)) return light.irradiance;
     return light.irradiance * greater_of(-dot(light.direction, receiver.normal), 0.0f);
 }
@@ -42,36 +61,37 @@ inline float tree_irradiance(IN(Scene) scene, IN(Receiver) receiver) {
     return scene.tree_intensity * sum;
 }
 
-inline LightChances light_chances(IN(Scene) scene, uint layers, IN(Receiver) receiver) {
-    if (scene.light_count == scene.tree_light_count) return LightChances(1.0f, 0.0f, 0.0f);
+inline LightChances light_chances(IN(Scene) scene, IN(View) view, IN(Receiver) receiver) {
     const bool has_tree = scene.tree_light_count > 0u;
+    if (!has_sampled_infinite_light(scene, view, receiver))
+        return LightChances(has_tree ? 1.0f : 0.0f, 0.0f, 0.0f);
     float tree = 0.0f;
     if (has_tree) tree = tree_irradiance(scene, receiver);
     float sum = tree, count = has_tree ? 1.0f : 0.0f;
     NO_UNROLL
     for (uint i = scene.tree_light_count; i < scene.light_count; ++i) {
-        if (!is_seen(scene, scene.lights.items[i], layers)) continue;
-        sum += irradiance_of(scene.lights.items[i], receiver);
+        if (!is_sampled(scene, view, scene.lights.items[i], receiver)) continue;
+        sum += irradiance_of(view, scene.lights.items[i], receiver);
         count += 1.0f;
     }
-    if (!(count > 0.0f)) return LightChances(0.0f, 0.0f, 0.0f);
     if (!(sum > 0.0f)) return LightChances(has_tree ? 1.0f / count : 0.0f, 0.0f, 1.0f / count);
     const float weight = (1.0f - EvenShare) / sum, least = EvenShare / count;
     return LightChances(has_tree ? weight * tree + least : 0.0f, weight, least);
 }
 
-inline float chance_of(IN(LightChances) chances, IN(LightSource) light, IN(Receiver) receiver) {
-    return chances.weight * irradiance_of(light, receiver) + chances.least;
+inline float chance_of(IN(LightChances) chances, IN(View) view, IN(LightSource) light,
+                       IN(Receiver) receiver) {
+    return chances.weight * irradiance_of(view, light, receiver) + chances.least;
 }
 
 // Probability of the light tree.
-inline float tree_chance(IN(Scene) scene, uint layers, IN(Receiver) receiver) {
-    return light_chances(scene, layers, receiver).tree;
+inline float tree_chance(IN(Scene) scene, IN(View) view, IN(Receiver) receiver) {
+    return light_chances(scene, view, receiver).tree;
 }
 
 // Of an infinite light that the view sees.
-inline float distant_chance(IN(Scene) scene, uint layers, IN(LightSource) light, IN(Receiver) receiver) {
-    return chance_of(light_chances(scene, layers, receiver), light, receiver);
+inline float distant_chance(IN(Scene) scene, IN(View) view, IN(LightSource) light, IN(Receiver) receiver) {
+    return chance_of(light_chances(scene, view, receiver), view, light, receiver);
 }
 
 // Index of the light, in the order of the scene's lights; any index below tree_light_count is the light tree.
@@ -81,8 +101,8 @@ struct ChosenLight {
     float rest;         // u rescaled to [0, 1), for the tree
 };
 
-inline ChosenLight choose_light(IN(Scene) scene, uint layers, IN(Receiver) receiver, float u) {
-    const LightChances chances = light_chances(scene, layers, receiver);
+inline ChosenLight choose_light(IN(Scene) scene, IN(View) view, IN(Receiver) receiver, float u) {
+    const LightChances chances = light_chances(scene, view, receiver);
     ChosenLight chosen = ChosenLight(0u, chances.tree, 0.0f);
     if (u < chances.tree) {
         chosen.rest = lesser_of(u / chances.tree, 0.99999994f);
@@ -92,9 +112,9 @@ inline ChosenLight choose_light(IN(Scene) scene, uint layers, IN(Receiver) recei
     float left = u - chances.tree;
     NO_UNROLL
     for (uint i = scene.tree_light_count; i < scene.light_count && left >= 0.0f; ++i) {
-        if (!is_seen(scene, scene.lights.items[i], layers)) continue;
+        if (!is_sampled(scene, view, scene.lights.items[i], receiver)) continue;
         chosen.index = i;
-        chosen.probability = chance_of(chances, scene.lights.items[i], receiver);
+        chosen.probability = chance_of(chances, view, scene.lights.items[i], receiver);
         left -= chosen.probability;
     }
     return chosen;

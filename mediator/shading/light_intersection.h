@@ -46,7 +46,7 @@ WITH_CONTEXT inline void add_area_light(IN(Context) context, INOUT(Path) path, I
                                             : hit_quad(light, emitter.inverse_root_area, whole);
         }
         const Receiver receiver = last_receiver(path);
-        other = tree_chance(context.scene, context.view.layers, receiver) *
+        other = tree_chance(context.scene, context.view, receiver) *
                 leaf_probability(context.scene, emitter.node, receiver) * hit.pdf;
     }
     const float weight = weight_by_chance(context.view, path, other);
@@ -95,7 +95,7 @@ WITH_CONTEXT inline void add_sun_disks(IN(Context) context, INOUT(Path) path, IN
         float other = 0.0f;
         if (path.bsdf_pdf > 0.0f) {
             // By the light at shutter open, as for the choice.
-            other = distant_chance(context.scene, context.view.layers, context.scene.lights.items[i],
+            other = distant_chance(context.scene, context.view, context.scene.lights.items[i],
                                    last_receiver(path)) *
                     cone_pdf(light.one_minus_cos_half_angle);
         }

@@ -14,7 +14,8 @@ SHADING_BEGIN
 struct Receiver {
     vec3 position;
     vec3 normal;
-    vec3 span;  // to its other end, if it is a segment in a medium; else 0
+    vec3 span;      // to its other end, if it is a segment in a medium; else 0
+    uint sky_cell;  // of a surface (sky_cells.h); NoSkyCell: none
 };
 
 // The receiver's nearest point to another point.

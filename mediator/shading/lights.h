@@ -154,12 +154,25 @@ inline LightSample sample_emitter(IN(Scene) scene, IN(Emitter) emitter, IN(Light
     return sample_point_light(light, surface, probability);
 }
 
-inline LightSample sample_distant(IN(Scene) scene, IN(LightSource) light, float probability, vec2 u) {
+// By the tiles of the receiver's cell, or by the map.
+inline vec3 sample_visible_sky(IN(Scene) scene, IN(View) view, uint index, vec2 u) {
+    if (index == NoSkyCell) return sample_sky(scene, u);
+    const SkyCell cell = view.sky_cells.items[index];
+    if (u.x < cell.tile_chance) {
+        const Choice tile = choose(view.sky_cdfs, cell.cdf, SkyTiles, u.y);
+        return direction_in_tile(tile.index, vec2(lesser_of(u.x / cell.tile_chance, 0.99999994f), tile.rest));
+    }
+    const float rest = (u.x - cell.tile_chance) / (1.0f - cell.tile_chance);
+    return sample_sky(scene, vec2(lesser_of(rest, 0.99999994f), u.y));
+}
+
+inline LightSample sample_distant(IN(Scene) scene, IN(View) view, IN(LightSource) light,
+                                  IN(Receiver) receiver, float probability, vec2 u) {
     if (light.kind == LightEnvironment) {
-        const vec3 direction = sample_sky(scene, u);
+        const vec3 direction = sample_visible_sky(scene, view, receiver.sky_cell, u);
         const Sky sky = sky_at(scene, direction);
         LightSample found = sample_distant_light(probability, direction, sky.radiance);
-        found.pdf *= sky.pdf;
+        found.pdf *= sky_cell_pdf(view, receiver.sky_cell, direction, sky.pdf);
         return found;
     }
     LightSample found = sample_distant_light(probability, -light.direction, light.intensity);
@@ -171,10 +184,13 @@ inline LightSample sample_distant(IN(Scene) scene, IN(LightSource) light, float 
 }
 
 // Transmissive surfaces receive light from both sides; points in media have no normal.
-inline Receiver receiver_at(IN(Surface) surface) {
+inline Receiver receiver_at(IN(View) view, uint sample_index, IN(Surface) surface) {
     const bool through = (surface.bsdf.lobes & FeatureRoughGlass) != 0u;
     const vec3 normal = surface.is_lifted ? surface.frame[2] : surface.geometric_normal;
-    return Receiver(surface.position, through ? vec3(0.0f) : normal, vec3(0.0f));
+    const vec3 facing = through ? vec3(0.0f) : normal;
+    const uint cell =
+        is_in_medium(surface) ? NoSkyCell : sky_cell_at(view, sample_index, surface.position, facing);
+    return Receiver(surface.position, facing, vec3(0.0f), cell);
 }
 
 inline LightSample sample_chosen(IN(Scene) scene, uint layers, IN(Surface) surface, IN(Emitter) emitter,
@@ -200,20 +216,20 @@ inline LightSample sample_tree(IN(Scene) scene, uint layers, IN(Surface) surface
 // An emitter in none of the view's layers contributes nothing; choosing it wastes the sample, since all views
 // have the same tree. If hidden emitters have probability p, the variance grows by 1 / (1 - p). `given`: an
 // emitter that has been chosen already, if any.
-inline LightSample sample_light(IN(Scene) scene, uint layers, IN(Surface) surface, IN(ChosenEmitter) given,
-                                vec2 choice, vec2 u) {
+inline LightSample sample_light(IN(Scene) scene, IN(View) view, IN(Surface) surface, IN(Receiver) receiver,
+                                IN(ChosenEmitter) given, vec2 choice, vec2 u) {
     ChosenEmitter emitter = given;
     if (!(given.probability > 0.0f)) {
-        const Receiver receiver = receiver_at(surface);
-        const ChosenLight chosen = choose_light(scene, layers, receiver, choice.x);
+        const ChosenLight chosen = choose_light(scene, view, receiver, choice.x);
         if (!(chosen.probability > 0.0f)) return no_light();
         if (chosen.index >= scene.tree_light_count)
-            return sample_distant(scene, light_at(scene, scene.lights.items[chosen.index], surface.time),
+            return sample_distant(scene, view,
+                                  light_at(scene, scene.lights.items[chosen.index], surface.time), receiver,
                                   chosen.probability, u);
         emitter = choose_emitter(scene, receiver, vec2(chosen.rest, choice.y));
         emitter.probability *= chosen.probability;
     }
-    return sample_tree(scene, layers, surface, emitter, u);
+    return sample_tree(scene, view.layers, surface, emitter, u);
 }
 
 // Density with which a point of the triangle that was hit is sampled from a place, per solid angle.
@@ -230,19 +246,21 @@ inline float hit_triangle_pdf(IN(Scene) scene, IN(Emitter) emitter, IN(Surface) 
 }
 
 // Density with which sample_light finds, for a receiver, the point of a mesh light that was hit.
-inline float mesh_light_pdf(IN(Scene) scene, uint layers, IN(Surface) hit, IN(Receiver) receiver) {
+inline float mesh_light_pdf(IN(Scene) scene, IN(View) view, IN(Surface) hit, IN(Receiver) receiver) {
     if ((scene.features & FeatureMeshLights) == 0u || hit.light < 0) return 0.0f;
     const Emitter emitter = scene.emitters.items[scene.lights.items[hit.light].first_emitter + hit.triangle];
     if (emitter.node == NoLightNode) return 0.0f;
     const float probability =
-        tree_chance(scene, layers, receiver) * leaf_probability(scene, emitter.node, receiver);
+        tree_chance(scene, view, receiver) * leaf_probability(scene, emitter.node, receiver);
     return probability * hit_triangle_pdf(scene, emitter, hit, receiver.position);
 }
 
 // The same of a direction to the sky.
-inline float sky_light_pdf(IN(Scene) scene, uint layers, IN(Sky) sky, IN(Receiver) receiver) {
+inline float sky_light_pdf(IN(Scene) scene, IN(View) view, IN(Sky) sky, vec3 direction,
+                           IN(Receiver) receiver) {
     if (scene.environment_light < 0) return 0.0f;
-    return distant_chance(scene, layers, scene.lights.items[scene.environment_light], receiver) * sky.pdf;
+    const float pdf = sky_cell_pdf(view, receiver.sky_cell, direction, sky.pdf);
+    return distant_chance(scene, view, scene.lights.items[scene.environment_light], receiver) * pdf;
 }
 
 SHADING_END

@@ -33,7 +33,8 @@ struct Path {
     float probability;  // of this branch, if all branches are followed
     float bsdf_pdf;     // of its direction; 0 = from the camera or a perfect specular
     vec3 last_position;
-    vec3 last_normal;  // of the receiver there (light_tree.h)
+    vec3 last_normal;    // of the receiver there (light_tree.h)
+    uint last_sky_cell;  // of the same
     RayCone cone;
     SpecularChain chain;
     uvec4 containing_media;    // media that the ray is in (containing_media.h)
@@ -52,8 +53,9 @@ inline PathSample empty_path_sample() {
 }
 
 inline Path start_path(IN(Sampler) numbers) {
-    return Path(numbers, 0u, 0u, 0u, vec3(1.0f), 1.0f, 0.0f, vec3(0.0f), vec3(0.0f), RayCone(0.0f, 0.0f),
-                SpecularChain(false, -1), no_media(), direct_class_info(), empty_path_sample(), 0u);
+    return Path(numbers, 0u, 0u, 0u, vec3(1.0f), 1.0f, 0.0f, vec3(0.0f), vec3(0.0f), NoSkyCell,
+                RayCone(0.0f, 0.0f), SpecularChain(false, -1), no_media(), direct_class_info(),
+                empty_path_sample(), 0u);
 }
 
 // Red, green or blue: in turn, from sample to sample.

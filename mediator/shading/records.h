@@ -262,9 +262,9 @@ struct Environment {
     uint row_cdf;     // index of the rows' cumulative distribution
     uint column_cdf;  // index of the cumulative distributions within each row
     uint emits;
-    vec4 visible_color;  // background and alpha for camera rays that miss
-    uint shows_color;    // whether they see it instead of the environment light
-    uint unused;         // keeps the size a multiple of an address's
+    vec4 visible_color;     // background and alpha for camera rays that miss
+    uint shows_color;       // whether they see it instead of the environment light
+    float irradiance_unit;  // LightSource's irradiance of a sky of luminance 1
 };
 
 // Features that occur in a scene; kernels can be compiled without the others.
@@ -291,6 +291,22 @@ inline constexpr uint FeatureMedia = 0x1000000u, FeatureIndexMatchedMedia = 0x10
 // Some glass objects may be nested in others.
 inline constexpr uint FeatureNestedGlass = 0x80000000u;
 
+// A node of a k-d tree over places (sky_cells.h): the first of two children, or a cell.
+struct SkyNode {
+    float split;
+    uint axis;
+    uint child;
+};
+
+// Light samples of the sky in a region (sky_cells.h).
+struct SkyCell {
+    uint cdf;           // of its tiles
+    float tile_chance;  // probability of sampling by tiles; else by the map
+    float irradiance;   // that arrives, in the unit of LightSource
+};
+
+ARRAY_OF(SkyNode, SkyNodeArray, 4);
+ARRAY_OF(SkyCell, SkyCellArray, 4);
 ARRAY_OF(Texture, TextureArray, 8);
 ARRAY_OF(Material, MaterialArray, 4);
 ARRAY_OF(MaterialExtras, MaterialExtrasArray, 4);
@@ -348,6 +364,7 @@ inline constexpr uint CameraPinhole = 0u, CameraOrthographic = 1u, CameraLens = 
 // Quantities that a sample records in addition to its radiance.
 inline constexpr uint RecordsDiffuse = 1u, RecordsConnections = 2u, RecordsHeadlight = 4u;
 inline constexpr uint UnlimitedScatterEvents = 0xffffffffu;
+inline constexpr uint NoSkyCells = 0xffffffffu, NoSkyCell = 0xffffffffu;
 
 struct View {
     uint64_t seed;
@@ -378,7 +395,10 @@ struct View {
     uvec4 containing_media;    // instances of the media that the eye is in (containing_media.h)
     uint max_specular_events;  // perfect reflections and refractions of a path
     float clamp_indirect;      // most of a component that indirect light adds at once; 0 = no limit
-    uint unused;               // keeps the size a multiple of an address's
+    uint sky_cells_from;       // first sample that uses the sky cells; NoSkyCells: none does
+    SkyNodeArray sky_nodes;
+    SkyCellArray sky_cells;
+    FloatArray sky_cdfs;
 };
 
 RECORDS_END

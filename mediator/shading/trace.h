@@ -68,9 +68,12 @@ WITH_CONTEXT inline bool leave_vertex(IN(Context) context, INOUT(Path) path, INO
     vec3 direction = vec3(0.0f);
     if (lobe.kind == LobeRough) {
         const vec3 wo = to_local(surface, -ray.direction);
-        add_lights(context, path, surface, wo, equiangular, lobe.roulette, connection);
+        const Receiver receiver = receiver_at(context.view, path.numbers.index, surface);
+        if (!is_in_medium(surface)) log_receiver(context, receiver, leaving(surface, surface.frame[2]));
+        add_lights(context, path, surface, receiver, wo, equiangular, lobe.roulette, connection);
         if (equiangular.is_equiangular) return true;
-        if (!scatter(context.scene.energy, context.view, path, surface, wo, lobe, direction)) return false;
+        if (!scatter(context.scene.energy, context.view, path, surface, receiver, wo, lobe, direction))
+            return false;
     } else {
         direction = scatter_specular(context, path, surface, lobe, is_straight);
     }

@@ -27,6 +27,7 @@
 //   log_emission(context, emission, direction)   the surface shines
 //   log_light(context, direction, gathered)      a light is seen
 //   log_specular(context, reflects, direction)   perfect reflection or refraction
+//   log_receiver(context, receiver, ray)         light is sampled at a surface; the ray leaves it
 SHADING_BEGIN
 
 #ifndef __cplusplus
@@ -36,6 +37,7 @@ SHADING_BEGIN
 #define log_emission(context, emission, direction)
 #define log_light(context, direction, gathered)
 #define log_specular(context, reflects, direction)
+#define log_receiver(context, receiver, ray)
 #endif
 
 // Probabilities of a surface's lobe groups, in proportion to the luminance they pass on. Sum 1, or all 0 for
@@ -96,7 +98,7 @@ inline vec3 diffuse_fraction(IN(BsdfValue) bsdf) {
 
 // The vertex that the BSDF sample left.
 inline Receiver last_receiver(IN(Path) path) {
-    return Receiver(path.last_position, path.last_normal, vec3(0.0f));
+    return Receiver(path.last_position, path.last_normal, vec3(0.0f), path.last_sky_cell);
 }
 
 // MIS weight of light that was hit by the BSDF sample; `other`: the density of next event estimation.
@@ -125,7 +127,7 @@ WITH_CONTEXT inline void add_sky(IN(Context) context, INOUT(Path) path, IN(Ray) 
     connect_light(path.found, context.view, path.probability * sky.radiance);
     float other = 0.0f;
     if (path.bsdf_pdf > 0.0f)
-        other = sky_light_pdf(context.scene, context.view.layers, sky, last_receiver(path));
+        other = sky_light_pdf(context.scene, context.view, sky, ray.direction, last_receiver(path));
     const float weight = weight_by_chance(context.view, path, other);
     add_light(path.found, context.view, path.throughput * sky.radiance * weight, path.class_info);
 }
@@ -136,7 +138,7 @@ WITH_CONTEXT inline void add_emission(IN(Context) context, INOUT(Path) path, IN(
     connect_light(path.found, context.view, path.probability * surface.emission);
     float other = 0.0f;
     if (path.bsdf_pdf > 0.0f)
-        other = mesh_light_pdf(context.scene, context.view.layers, surface, last_receiver(path));
+        other = mesh_light_pdf(context.scene, context.view, surface, last_receiver(path));
     const float weight = weight_by_chance(context.view, path, other);
     add_light(path.found, context.view, path.throughput * surface.emission * weight, path.class_info);
     log_emission(context, surface.emission, ray.direction);
@@ -175,15 +177,15 @@ inline constexpr float MinConnectionWeight = 0.125f;
 
 // Next event estimation. `connection` is opened if the shadow ray may cross medium boundaries. `equiangular`:
 // of a point in a medium. `roulette`: a uniform number.
-WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Surface) surface, vec3 wo,
-                                    IN(EquiangularSample) equiangular, float roulette,
-                                    INOUT(Connection) connection) {
+WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Surface) surface,
+                                    IN(Receiver) receiver, vec3 wo, IN(EquiangularSample) equiangular,
+                                    float roulette, INOUT(Connection) connection) {
     if (context.scene.light_count == 0u) return;
     const vec4 numbers = light_numbers(path);
     const vec2 choice = vec2(numbers), u = vec2(numbers.z, numbers.w);
     ChosenEmitter given = no_emitter();
     if (equiangular.is_equiangular) given = equiangular.chosen;
-    const LightSample light = sample_light(context.scene, context.view.layers, surface, given, choice, u);
+    const LightSample light = sample_light(context.scene, context.view, surface, receiver, given, choice, u);
     if (!(light.pdf > 0.0f) || !(largest(light.radiance) > 0.0f)) return;
     if (context.view.strategy == StrategyBsdfOnly && !light.delta) return;
     const vec3 wi = to_local(surface, light.direction);
@@ -194,8 +196,7 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
     float weight = 1.0f, density = light.pdf;
     if ((context.scene.features & FeatureScattering) != 0u && equiangular.is_active) {
         const EquiangularWeights weights =
-            equiangular_weights(context.scene, context.view.strategy, equiangular, light,
-                                receiver_at(surface), context.view.layers);
+            equiangular_weights(context.scene, context.view, equiangular, light, receiver);
         weight = weights.weight;
         if (equiangular.is_equiangular) {
             // The power heuristic uses the density from the path's own vertex.
@@ -275,8 +276,8 @@ inline Lobe choose_lobe(INOUT(Path) path, IN(Surface) surface, IN(Lobe) rough) {
 }
 
 // Sets `direction` to the sampled direction; false: the path ends. The caller counts the vertex.
-inline bool scatter(FloatArray energy, IN(View) view, INOUT(Path) path, IN(Surface) surface, vec3 wo,
-                    IN(Lobe) lobe, INOUT(vec3) direction) {
+inline bool scatter(FloatArray energy, IN(View) view, INOUT(Path) path, IN(Surface) surface,
+                    IN(Receiver) receiver, vec3 wo, IN(Lobe) lobe, INOUT(vec3) direction) {
     const vec3 wi = sample_bsdf(surface.bsdf, wo, lobe.choice, lobe.direction);
     const BsdfValue bsdf = evaluate_bsdf(energy, surface.bsdf, wo, wi);
     if (!(bsdf.pdf > 0.0f)) return false;
@@ -284,9 +285,9 @@ inline bool scatter(FloatArray energy, IN(View) view, INOUT(Path) path, IN(Surfa
     if (!is_consistent_side(surface, direction, wi)) return false;
     path.throughput *= bsdf.value / bsdf.pdf;
     path.bsdf_pdf = bsdf.pdf;
-    const Receiver receiver = receiver_at(surface);
     path.last_position = receiver.position;
     path.last_normal = receiver.normal;
+    path.last_sky_cell = receiver.sky_cell;
     path.cone.spread = greater_of(path.cone.spread, chosen_spread(bsdf.pdf, path.numbers.index));
     if (records(view, RecordsDiffuse) && path.class_info.scatter_count == 0u)
         path.class_info.diffuse_fraction = diffuse_fraction(bsdf);

@@ -127,6 +127,8 @@ constexpr auto enumerators(FeatureRule) {
 
 inline constexpr std::uint32_t UnlimitedBounces = std::numeric_limits<std::uint32_t>::max();
 
+inline constexpr std::uint32_t NoSkyCells = std::numeric_limits<std::uint32_t>::max();
+
 inline constexpr std::uint32_t AllLayers = 0xffffffff;  // object layers: bit i is layer i
 
 // What to render, by value: a sample is a pure function of (scene content, view, pixel, sample index). A new revision
@@ -143,6 +145,8 @@ struct View {
     std::uint32_t max_specular_bounces = 32;  // perfect reflections and refractions
     float clamp_indirect =
         0.0f;  // most of a component that a path adds after its second bounce; 0 = no limit
+    // The first sample that samples the sky where it is seen (mediator/shading/sky_cells.h).
+    std::uint32_t sky_cells_from = NoSkyCells;
     PixelFilter pixel_filter;
     Renderer renderer = Renderer::PathTracing;
     PathClass path_class = PathClass::Indirect;
@@ -190,7 +194,8 @@ struct View {
             row(24, "camera_motion", camera(&CameraPose::motion), Limit{scene::MaxDecodedMotion}),
             row(25, "later_channels", channels(1)),
             row(26, "max_specular_bounces", &View::max_specular_bounces, InitialWhenAbsent{}),
-            row(27, "clamp_indirect", &View::clamp_indirect));
+            row(27, "clamp_indirect", &View::clamp_indirect),
+            row(28, "sky_cells_from", &View::sky_cells_from, InitialWhenAbsent{}));
     }
     const char* malformed() const {
         // Also of NaN.

@@ -20,7 +20,7 @@
 // Handshake and heartbeats of all peers, and messages between the master and its nodes.
 namespace tessera::wire {
 
-inline constexpr std::uint32_t ProtocolVersion = 5;
+inline constexpr std::uint32_t ProtocolVersion = 6;
 
 // Names appear in status and summaries of many peers, which have to fit messages.
 inline constexpr std::size_t MaxNameBytes = 256;

@@ -91,7 +91,7 @@ TEST(Tables, TheTreeAndInfiniteLightsAreWeighedByIrradiance) {
          Create{Bulb, scene::Light{.intensity = glm::vec3(3.0f)}},
          Create{Sun, scene::Light{.kind = scene::LightKind::Directional, .intensity = glm::vec3(0.2f)}},
          Create{Sky, scene::Background{.color = glm::vec3(0.5f)}}});
-    ASSERT_EQ(tables.lights.size(), 3u);
+    ASSERT_EQ(tables.lights.size(), 4u);
     EXPECT_EQ(tables.scene.tree_light_count, 2u);
     const shading::LightSource &mesh = tables.lights[0], &bulb = tables.lights[1];
     EXPECT_EQ(mesh.kind, shading::LightMesh);
@@ -99,7 +99,9 @@ TEST(Tables, TheTreeAndInfiniteLightsAreWeighedByIrradiance) {
     EXPECT_EQ(tables.lights[2].kind, shading::LightDirectional);
     EXPECT_EQ(tables.instances[0].light, 0);
     EXPECT_EQ(tables.instances[1].light, -1);
-    EXPECT_EQ(tables.scene.environment_light, -1) << "an even sky is found by BSDF samples";
+    ASSERT_EQ(tables.scene.environment_light, 3);
+    EXPECT_EQ(tables.lights[3].irradiance, 0.0f)
+        << "an even sky is found by BSDF samples, but where cells know its visible parts";
     EXPECT_EQ(tables.scene.environment.emits, 1u);
     // All of the mesh faces one way: its radiance of 2 times its area of 8.
     const double scale = tables.scene.tree_scale, tree = (2.0 * 8.0 + 3.0) * scale * scale;
@@ -242,7 +244,7 @@ TEST(Tables, LayersAndViewsWithHiddenLayersSetTheFeature) {
          Create{Bulb, scene::Light{}}, Create{PaintId, scene::Material{}},
          Create{Emissive, scene::Material{.emission = glm::vec3(2.0f)}},
          Create{Sky, scene::Background{.color = glm::vec3(0.5f)}}});
-    ASSERT_EQ(tables.lights.size(), 2u) << "an even sky takes no light samples";
+    ASSERT_EQ(tables.lights.size(), 3u) << "panel, bulb and sky";
     EXPECT_EQ(tables.instances.at(0).layers, 6u);
     EXPECT_EQ(tables.instances.at(1).layers, 1u);
     EXPECT_EQ(tables.lights[0].layers, 6u) << "the emissive panel";

@@ -40,6 +40,7 @@ TEST(ViewOptions, AreConvertedToAView) {
                         .bounces = 3,
                         .specular_bounces = 5,
                         .clamp = 2.5,
+                        .sky_sampling = "visible",
                         .pixel_filter = "gaussian",
                         .seed = 9};
     options.crop = "8,4,16,8";
@@ -51,6 +52,7 @@ TEST(ViewOptions, AreConvertedToAView) {
     EXPECT_EQ(plan->view.max_bounces, 3u);
     EXPECT_EQ(plan->view.max_specular_bounces, 5u);
     EXPECT_EQ(plan->view.clamp_indirect, 2.5f);
+    EXPECT_EQ(plan->view.sky_cells_from, 0u);
     EXPECT_EQ(plan->view.seed, 9u);
     EXPECT_EQ(plan->view.pixel_filter.kind, view::PixelFilterKind::Gaussian);
     EXPECT_EQ(plan->import.background, glm::vec3(0.25f, 0.5f, 1.0f));

@@ -64,8 +64,9 @@ inline EquiangularWeights equiangular_weights_of(IN(Case) c, IN(Inputs) x) {
     LightSample light = no_light();
     light.emitter = int(x.a % TriangleEmitters);
     light.chance = 0.3f;
-    return equiangular_weights(c.context.scene, StrategyBoth + (x.c % 2u) * StrategyEquiangularOnly,
-                               equiangular, light, c.receiver, c.context.view.layers);
+    View view = c.context.view;
+    view.strategy = StrategyBoth + (x.c % 2u) * StrategyEquiangularOnly;
+    return equiangular_weights(c.context.scene, view, equiangular, light, c.receiver);
 }
 inline BoxRay through_box(IN(Case) c, IN(Inputs) x) {
     const BoxRay ray = box_ray(c.instance, medium_of(c, x), c.instance.translation + c.instance.linear * x.wo,

@@ -17,5 +17,7 @@ template <class... Arguments>
 void log_light(const Context&, const Arguments&...) {}
 template <class... Arguments>
 void log_specular(const Context&, const Arguments&...) {}
+template <class Context, class... Arguments>
+void log_receiver(const Context&, const Arguments&...) {}
 
 }  // namespace tessera::shading

@@ -40,6 +40,7 @@ inline Path path_in(IN(Inputs) x) {
     path.bsdf_pdf = x.c % 3u == 0u ? 0.0f : x.pdf;
     path.last_position = x.wo;
     path.last_normal = x.n;
+    path.last_sky_cell = x.b % 3u == 2u ? NoSkyCell : x.b % 3u;
     path.cone = RayCone(x.metallic, x.transmission);
     path.class_info = PathClassInfo(x.c % 4u, x.c % 5u == 0u, x.light);
     path.found.low = x.light;
@@ -79,7 +80,8 @@ inline Case make_case(IN(TestScene) test_scene, IN(Inputs) x) {
     made.light = made.context.scene.lights.items[x.d % LightCount];
     made.emitter = made.context.scene.emitters.items[x.d % TriangleEmitters];
     made.receiver =
-        Receiver(x.wo, x.c % 3u == 0u ? vec3(0.0f) : x.n, x.c % 5u == 0u ? 4.0f * x.wi : vec3(0.0f));
+        Receiver(x.wo, x.c % 3u == 0u ? vec3(0.0f) : x.n, x.c % 5u == 0u ? 4.0f * x.wi : vec3(0.0f),
+                 x.d % 3u == 2u ? NoSkyCell : x.d % 3u);
     made.surface = make_surface(made.context.scene, made.hit, x.n, x.c % 2u == 0u ? 0.0f : x.metallic,
                                 no_media(), made.context.time);
     made.wo = to_local(made.surface, -x.n);
@@ -291,10 +293,14 @@ inline Path with_sun_disks(IN(Case) c) {
     add_sun_disks(c.context, path, c.ray);
     return path;
 }
+inline Receiver surface_receiver(IN(Case) c) {
+    return receiver_at(c.context.view, c.path.numbers.index, c.surface);
+}
 inline Path with_lights(IN(Case) c) {
     Path path = c.path;
     Connection connection = no_connection();
-    add_lights(c.context, path, c.surface, c.wo, no_equiangular_sample(), 0.5f, connection);
+    add_lights(c.context, path, c.surface, surface_receiver(c), c.wo, no_equiangular_sample(), 0.5f,
+               connection);
     return path;
 }
 
@@ -331,8 +337,8 @@ inline Step chosen_lobe(IN(Case) c) {
 }
 inline Step scattered(IN(Case) c) {
     Step step = first_step(c);
-    step.goes_on = scatter(c.context.scene.energy, c.context.view, step.path, c.surface, c.wo, step.lobe,
-                           step.ray.direction);
+    step.goes_on = scatter(c.context.scene.energy, c.context.view, step.path, c.surface, surface_receiver(c),
+                           c.wo, step.lobe, step.ray.direction);
     return step;
 }
 inline Step scattered_specular(IN(Case) c, uint kind, bool is_straight) {

@@ -170,6 +170,7 @@ inline void put(INOUT(Outputs) y, IN(Path) path) {
     put(y, path.bsdf_pdf);
     put(y, path.last_position);
     put(y, path.last_normal);
+    put(y, path.last_sky_cell);
     put(y, path.cone);
     put(y, path.chain);
     put(y, path.class_info);

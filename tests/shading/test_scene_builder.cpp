@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -334,6 +335,29 @@ std::vector<LightNode> make_nodes(std::vector<Emitter>& emitters, Generator& ran
     return nodes;
 }
 
+// Two cells; some faces have a split, or no cell.
+std::vector<SkyNode> make_sky_nodes() {
+    const SkyNode first{0.0f, SkyLeaf, 0u}, second{0.0f, SkyLeaf, 1u}, none{0.0f, SkyLeaf, NoSkyCell};
+    return {{0.1f, 0u, 7u}, first, second, none, {-0.2f, 1u, 9u}, first, second, first, second, none, second};
+}
+
+std::vector<SkyCell> make_sky_cells() {
+    return {{0u, 0.4f, 0.5f}, {SkyTiles, 1.0f, 0.1f}};
+}
+
+std::vector<float> make_sky_cdfs(Generator& random) {
+    std::vector<float> cdfs;
+    for (uint cell = 0; cell < 2u; ++cell) {
+        std::vector<float> weights;
+        for (uint tile = 0; tile < SkyTiles; ++tile) weights.push_back(random.between(0.0f, 1.0f));
+        float sum = 0.0f;
+        const float all = std::accumulate(weights.begin(), weights.end(), 0.0f);
+        for (const float weight : weights) cdfs.push_back(std::min((sum += weight) / all, 1.0f));
+        cdfs.back() = 1.0f;
+    }
+    return cdfs;
+}
+
 std::vector<View> make_views(Generator& random) {
     std::vector<View> views;
     for (uint i = 0; i < ViewCount; ++i) {
@@ -363,7 +387,21 @@ std::vector<View> make_views(Generator& random) {
              .focus_distance = 2.0f,
              .containing_media = no_media(),
              .max_specular_events = 1u + i % 3u,
-             .clamp_indirect = i % 7u == 3u ? 0.5f : 0.0f});
+             .clamp_indirect = i % 7u == 3u ? 0.5f : 0.0f,
+             .sky_cells_from = i % 2u == 0u ? NoSkyCells : 0u});
+    }
+    return views;
+}
+
+std::vector<View> with_sky_cells(std::vector<View> views, Packer& packer) {
+    Generator random(false);
+    const auto nodes = packer.add<SkyNodeArray>(make_sky_nodes());
+    const auto cells = packer.add<SkyCellArray>(make_sky_cells());
+    const auto cdfs = packer.add<FloatArray>(make_sky_cdfs(random));
+    for (View& view : views) {
+        view.sky_nodes = nodes;
+        view.sky_cells = cells;
+        view.sky_cdfs = cdfs;
     }
     return views;
 }
@@ -443,7 +481,7 @@ PackedTestScene make_test_scene(std::uint64_t address) {
 
     TestScene test_scene{};
     test_scene.scenes = packer.add<SceneArray>(std::vector<Scene>{scene, without_lights(scene)});
-    test_scene.views = packer.add<ViewArray>(make_views(random));
+    test_scene.views = packer.add<ViewArray>(with_sky_cells(make_views(random), packer));
     return {packer.take(), test_scene};
 }
 

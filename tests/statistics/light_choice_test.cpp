@@ -15,7 +15,7 @@ using shading::Receiver;
 constexpr float Up = 1.0f;
 
 Receiver receiver(const glm::vec3& position, float up = Up) {
-    return {position, {0.0f, 0.0f, up}, {}};
+    return {position, {0.0f, 0.0f, up}, {}, shading::NoSkyCell};
 }
 
 // A room of 10 m that is open above, `scale` times as large: a lamp of 0.5 m at 3 m, a sun that stands high, a sky with a
@@ -35,8 +35,16 @@ struct House : Model {
     }
 };
 
+// A view of these object layers.
+shading::View seeing(std::uint32_t layers) {
+    shading::View view{};
+    view.layers = layers;
+    view.sky_cells_from = shading::NoSkyCells;
+    return view;
+}
+
 shading::LightChances chances_at(const shading::Scene& scene, const Receiver& place) {
-    return light_chances(scene, shading::AllLayers, place);
+    return light_chances(scene, seeing(shading::AllLayers), place);
 }
 
 TEST(LightChoice, FollowsTheIrradianceAtTheReceiver) {
@@ -77,11 +85,11 @@ TEST(LightChoice, GivesSunsBelowTheHorizonTheirEvenShare) {
     const shading::LightSource sun = scene.lights.items[1];
     ASSERT_EQ(sun.kind, shading::LightDirectional);
     const auto chance = [&](const Receiver& place) {
-        return distant_chance(scene, shading::AllLayers, sun, place);
+        return distant_chance(scene, seeing(shading::AllLayers), sun, place);
     };
     EXPECT_EQ(chance(receiver({}, -1.0f)), 0.2f / 3.0f);
     EXPECT_GT(chance(receiver({})), 0.2f);
-    EXPECT_GT(chance({{}, {}, {}}), 0.2f) << "in a medium";
+    EXPECT_GT(chance({{}, {}, {}, shading::NoSkyCell}), 0.2f) << "in a medium";
 }
 
 // What is chosen has the probability that the other technique assumes.
@@ -96,12 +104,12 @@ TEST(LightChoice, FitsItsProbabilities) {
         const shading::LightChances chances = chances_at(scene, place);
         std::vector<double> expected{chances.tree}, observed(4);
         for (std::uint32_t i = scene.tree_light_count; i < scene.light_count; ++i)
-            expected.push_back(chance_of(chances, scene.lights.items[i], place));
+            expected.push_back(chance_of(chances, seeing(shading::AllLayers), scene.lights.items[i], place));
         EXPECT_NEAR(expected[0] + expected[1] + expected[2] + expected[3], 1.0, 1e-6);
         constexpr int Count = 100'000;
         for (int i = 0; i < Count; ++i) {
             const float u = (float(i) + 0.5f) / Count;
-            const shading::ChosenLight chosen = choose_light(scene, shading::AllLayers, place, u);
+            const shading::ChosenLight chosen = choose_light(scene, seeing(shading::AllLayers), place, u);
             const bool in_tree = chosen.index < scene.tree_light_count;
             const std::size_t at = in_tree ? 0 : chosen.index - scene.tree_light_count + 1;
             ++observed[at];
@@ -124,13 +132,13 @@ TEST(LightChoice, TakesNoSamplesForHiddenSuns) {
     layered.lights.items = lights.data();
     for (int i = 0; i < 1000; ++i) {
         const float u = (float(i) + 0.5f) / 1000.0f;
-        const shading::ChosenLight chosen = choose_light(layered, 1, receiver({}), u);
+        const shading::ChosenLight chosen = choose_light(layered, seeing(1), receiver({}), u);
         EXPECT_NE(chosen.index, 1u);
         EXPECT_GT(chosen.probability, 0.0f);
     }
     lights[0].layers = lights[1].layers = lights[2].layers = 2;
     layered.tree_light_count = 0;
-    EXPECT_EQ(choose_light(layered, 1, receiver({}), 0.5f).probability, 0.0f);
+    EXPECT_EQ(choose_light(layered, seeing(1), receiver({}), 0.5f).probability, 0.0f);
 }
 
 double variance_of(const SceneAdapter& world, const view::View& view, Strategy strategy, Mean& mean) {
@@ -205,7 +213,7 @@ TEST(SkySampling, TracesNoShadowRaysToAnEvenSky) {
         model.sky(background);
         model.floor(model.material(chalk(glm::vec3(0.5f))), 1.0f, 0.0f);
         const SceneAdapter& world = model.build();
-        EXPECT_EQ(world.tables().scene.environment_light, -1);
+        EXPECT_EQ(world.tables().lights.back().irradiance, 0.0f);
         view::View view = small_view({0.0, 0.0, 0.5}, 1e-3);
         const PathTracer tracer(world.tables(), world.scene(), view);
         std::uint64_t rays = 0;

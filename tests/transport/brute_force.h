@@ -20,7 +20,9 @@ inline void log_emission(IN(Context), vec3, vec3) {}
 inline void log_light(IN(Context), vec3, vec3) {}
 inline void log_specular(IN(Context), bool, vec3) {}
 struct Surface;
+struct Receiver;
 inline void log_hit(IN(Context), IN(Surface), vec3) {}
+inline void log_receiver(IN(Context), IN(Receiver), IN(Ray)) {}
 #endif
 
 inline bool has_specular_trees(IN(Context) context) {

@@ -39,7 +39,8 @@ view::View some_view() {
                     .seed = 77,
                     .max_bounces = view::UnlimitedBounces,
                     .max_specular_bounces = 7,
-                    .clamp_indirect = 2.5f};
+                    .clamp_indirect = 2.5f,
+                    .sky_cells_from = 16};
     view.camera.left = -0.25;
     view.camera.world_from_camera[3][0] = 1e6;
     view.camera.projection = scene::Projection::Orthographic;

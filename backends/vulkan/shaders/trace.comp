@@ -92,6 +92,7 @@ bool has_specular_trees(IN(Context) context) {
 #define log_emission(context, emission, direction)
 #define log_light(context, direction, gathered)
 #define log_specular(context, reflects, direction)
+#define log_receiver(context, receiver, ray)
 
 #include "mediator/shading/trace.h"
 #ifdef RASTERISED

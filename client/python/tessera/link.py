@@ -35,7 +35,7 @@ _CURVE_OVERHEAD = 33
 _MAX_WAITING = 64  # bulk messages; the master requests dropped ones again
 _BURST = 256  # so that a flood of messages does not delay heartbeats
 _MIN_BACKOFF, _MAX_BACKOFF = 0.1, 5.0
-_PROTOCOL, _CLIENT = 5, 0
+_PROTOCOL, _CLIENT = 6, 0
 
 Message = Any
 

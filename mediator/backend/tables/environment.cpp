@@ -32,11 +32,6 @@ std::vector<double> texel_luminances(const SceneTables& tables) {
     return texels;
 }
 
-struct SkyMeans {
-    double luminance = 0.0;  // over the sphere
-    double excess = 0.0;     // of what light samples are to find: the luminance above its mean
-};
-
 // MIS compensation (Karlik et al. 2019): BSDF samples find the mean of the sky as well as light samples do, and need no shadow
 // ray, so light samples go where it is brighter. The weight of a texel is the excess of the mean of its own luminance and that
 // of its neighbourhood: a texel with a bright neighbour has a part of its light by bilinear filtering.
@@ -102,10 +97,10 @@ std::uint32_t add_cdf(SceneTables& tables, const std::vector<double>& weights) {
     return first;
 }
 
-double add_environment(SceneTables& tables, const scene::Scene& scene, const Indices& textures) {
+void add_environment(SceneTables& tables, const scene::Scene& scene, const Indices& textures) {
     const auto* root = scene.find_as<scene::Root>(scene::RootId);
     const auto* background = root ? scene.find_as<scene::Background>(root->background) : nullptr;
-    if (background == nullptr) return 0.0;
+    if (background == nullptr) return;
     shading::Environment& sky = tables.scene.environment;
     sky.color = background->color;
     sky.strength = background->strength;
@@ -113,19 +108,18 @@ double add_environment(SceneTables& tables, const scene::Scene& scene, const Ind
     sky.rotation = static_cast<float>(double(background->rotation) - (is_turned ? 0.5 * pi : 0.0));
     sky.visible_color = background->visible_color;
     sky.shows_color = background->visible == scene::VisibleBackground::Color ? 1u : 0u;
-    SkyMeans means{.luminance = double(shading::luminance(sky.color))};
+    tables.sky = {.luminance = double(shading::luminance(sky.color))};
     const auto map = textures.find(background->environment);
     if (map != textures.end() && sky.strength > 0.0f) {
         sky.map = tables.textures[map->second];
         sky.map.wrap_s = shading::WrapRepeat;
         sky.map.wrap_t = shading::WrapClamp;
         tables.environment_texels = tables.texels[map->second];
-        means = add_map_cdfs(tables);
+        tables.sky = add_map_cdfs(tables);
         tables.scene.features |= shading::FeatureEnvironmentMap;
     }
-    sky.emits = means.luminance > 0.0 ? 1u : 0u;
-    if (means.luminance > 0.0) tables.scene.features |= shading::FeatureEnvironment;
-    return means.excess;
+    sky.emits = tables.sky.luminance > 0.0 ? 1u : 0u;
+    if (sky.emits != 0u) tables.scene.features |= shading::FeatureEnvironment;
 }
 
 }  // namespace tessera::backend

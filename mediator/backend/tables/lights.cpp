@@ -191,7 +191,7 @@ double intensity_of(const std::vector<LightLeaf>& leaves) {
     return all + 0.25 * one_sided + 0.75 * glm::length(one_axis) + 0.5 * (two_sided + glm::length(two_axis));
 }
 
-// Relative to their sum at a distance of the tree's extent.
+// Relative to their sum at a distance of the tree's extent. Where that is 0 or overflows, only the sky is weighed.
 void weigh_lights(SceneTables& tables, const EmitterList& list, const DistantLights& distant) {
     const double scale = tables.scene.tree_scale;
     const double tree = list.leaves.empty() ? 0.0 : intensity_of(list.leaves) * scale * scale;
@@ -200,6 +200,7 @@ void weigh_lights(SceneTables& tables, const EmitterList& list, const DistantLig
     const auto weight = [&](double value) {
         return total > 0.0 && std::isfinite(total) ? static_cast<float>(value / total) : 0.0f;
     };
+    tables.scene.environment.irradiance_unit = total > 0.0 ? weight(pi) : 1.0f;
     if (!list.leaves.empty())
         tables.scene.tree_intensity = weight(tree / double(tables.light_nodes[0].power));
     for (std::size_t i = 0; i < distant.lights.size(); ++i) {
@@ -210,20 +211,19 @@ void weigh_lights(SceneTables& tables, const EmitterList& list, const DistantLig
 
 }  // namespace
 
-void add_lights(SceneTables& tables, const scene::Scene& scene, const FlatScene& flat_scene,
-                double sky_luminance) {
+void add_lights(SceneTables& tables, const scene::Scene& scene, const FlatScene& flat_scene) {
     EmitterList list;
     DistantLights distant;
     add_mesh_lights(tables, list);
     add_placed_lights(tables, scene, flat_scene, list, distant);
     add_tree(tables, list);
-    if (sky_luminance > 0.0) {
+    if (tables.sky.luminance > 0.0) {
         distant.add({.kind = shading::LightEnvironment, .layers = shading::AllLayers, .motion = -1},
-                    pi * sky_luminance);
+                    pi * tables.sky.excess);
     }
     weigh_lights(tables, list, distant);
     tables.scene.light_count = static_cast<std::uint32_t>(tables.lights.size());
-    tables.scene.environment_light = sky_luminance > 0.0 ? int(tables.lights.size()) - 1 : -1;
+    tables.scene.environment_light = tables.sky.luminance > 0.0 ? int(tables.lights.size()) - 1 : -1;
 }
 
 }  // namespace tessera::backend

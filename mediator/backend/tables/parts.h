@@ -53,8 +53,7 @@ bool has_nested_glass(const SceneTables& tables, const FlatScene& flat_scene, co
 void add_media(SceneTables& tables, const scene::Scene& scene, const FlatScene& flat_scene,
                const MeshCatalog& meshes, const Indices& textures);
 
-// Returns the mean luminance over the sphere that light samples are to find; 0: none.
-double add_environment(SceneTables& tables, const scene::Scene& scene, const Indices& textures);
+void add_environment(SceneTables& tables, const scene::Scene& scene, const Indices& textures);
 
 // Emitters in the order of their lights, and leaves of those with power.
 struct EmitterList {
@@ -65,9 +64,8 @@ struct EmitterList {
 // Sets the light index of emissive instances.
 void add_mesh_lights(SceneTables& tables, EmitterList& list);
 
-// All lights, those of meshes included.
-void add_lights(SceneTables& tables, const scene::Scene& scene, const FlatScene& flat_scene,
-                double sky_luminance);
+// All lights, those of meshes included. Needs the environment.
+void add_lights(SceneTables& tables, const scene::Scene& scene, const FlatScene& flat_scene);
 
 // Appends the CDF of the weights to the tables, normalised to end at 1 (uniform if all weights are 0), and returns
 // the index of its first entry.

@@ -107,8 +107,8 @@ SceneTables make_tables(const scene::Scene& scene, const FlatScene& flat_scene, 
     mark_shadow_catchers(tables, scene, flat_scene, meshes);
     add_media(tables, scene, flat_scene, meshes, textures);
     tables.layers = masks_of(flat_scene);
-    const double sky_luminance = add_environment(tables, scene, textures);
-    add_lights(tables, scene, flat_scene, sky_luminance);
+    add_environment(tables, scene, textures);
+    add_lights(tables, scene, flat_scene);
     return tables;
 }
 

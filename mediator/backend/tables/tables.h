@@ -13,6 +13,12 @@ namespace tessera::backend {
 
 // All scene data for shading, relative to the render origin and ordered by object id: a function of the scene's
 // content alone, the same for all back-ends. Vertices and texels stay in their blobs.
+// Of the environment light, over the sphere.
+struct SkyMeans {
+    double luminance = 0.0;
+    double excess = 0.0;  // of what samples of the map are to find: the luminance above its mean
+};
+
 struct SceneTables {
     std::vector<shading::Texture> textures;                     // those in use
     std::vector<shading::Material> materials;                   // 0 = the default grey, 1 = the placeholder's
@@ -32,6 +38,7 @@ struct SceneTables {
     std::vector<float> cdfs;                      // each ends at 1
     shading::Scene scene{};                       // without the addresses of the tables
     glm::dvec3 render_origin{0.0};
+    SkyMeans sky;
     std::vector<std::uint32_t> layers;  // each layer mask of instances and lights, once
 
     // The blobs that the addresses in the records point to: of each texture, the environment map and each mesh.

@@ -108,7 +108,8 @@ shading::View make_view(const view::View& view, const glm::dvec3& render_origin)
         .camera_key_intervals = static_cast<std::uint32_t>(camera.motion.size()),
         .containing_media = shading::no_media(),
         .max_specular_events = view.max_specular_bounces,
-        .clamp_indirect = view.clamp_indirect};
+        .clamp_indirect = view.clamp_indirect,
+        .sky_cells_from = shading::NoSkyCells};
 }
 
 std::vector<shading::Affine3x4> camera_keys(const view::CameraPose& camera, const glm::dvec3& render_origin) {
