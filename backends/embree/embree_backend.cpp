@@ -9,6 +9,7 @@
 #include "mediator/backend/path_log.h"
 #include "mediator/backend/sample_loop.h"
 #include "mediator/backend/sky_cells_cache.h"
+#include "mediator/base/float_mode.h"
 #include "mediator/frame/merge.h"
 #include "mediator/shading/sample_values.h"
 
@@ -42,6 +43,7 @@ class EmbreeBackend final : public Backend {
     std::unique_ptr<EditScope> begin_edit() override { return std::make_unique<Edit>(*this); }
 
     RenderResult render(const view::View& view, const view::WorkUnit& unit, std::stop_token stop) override {
+        const StandardFloatMode mode;
         require_renderer(view::TracingRenderers, view);
         const std::shared_lock lock(mutex_);
         if (unit.version != adapter_.version()) return {};

@@ -10,6 +10,7 @@
 #include "backends/null/gradient.h"
 #include "mediator/backend/sample_loop.h"
 #include "mediator/backend/shadow_scene.h"
+#include "mediator/base/float_mode.h"
 #include "mediator/frame/merge.h"
 #include "mediator/frame/render_revision.h"
 
@@ -40,6 +41,7 @@ class NullBackend final : public Backend {
     std::unique_ptr<EditScope> begin_edit() override { return std::make_unique<Edit>(*this); }
 
     RenderResult render(const view::View& view, const view::WorkUnit& unit, std::stop_token stop) override {
+        const StandardFloatMode mode;
         require_renderer(view::TracingRenderers, view);
         const std::shared_lock lock(mutex_);
         if (unit.version != shadow_.scene().version()) return {};

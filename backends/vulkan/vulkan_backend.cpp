@@ -12,6 +12,7 @@
 #include "mediator/backend/sky_cells_cache.h"
 #include "mediator/backend/tables/media.h"
 #include "mediator/backend/tables/view_record.h"
+#include "mediator/base/float_mode.h"
 #include "mediator/frame/render_revision.h"
 
 namespace tessera::vulkan {
@@ -57,6 +58,7 @@ class VulkanBackend final : public Backend {
     std::unique_ptr<EditScope> begin_edit() override { return std::make_unique<Edit>(*this); }
 
     RenderResult render(const view::View& view, const view::WorkUnit& unit, std::stop_token stop) override {
+        const StandardFloatMode mode;
         require_renderer(capabilities_.renderers, view);
         return on_device([&]() -> RenderResult {
             if (unit.version != adapter_.version()) return {};

@@ -5,6 +5,7 @@
 
 #include "master/render/adaptive/filtered_error.h"
 #include "master/render/adaptive/saved_step.h"
+#include "mediator/base/float_mode.h"
 #include "mediator/frame/resolve.h"
 #include "mediator/wire/film_state_codec.h"
 
@@ -75,6 +76,7 @@ void FilmStore::enqueue(Task task, std::size_t bytes) {
 }
 
 void FilmStore::run(std::stop_token stop) {
+    const StandardFloatMode mode;
     while (true) {
         std::unique_lock lock(mutex_);
         if (!changed_.wait(lock, stop, [this] { return !tasks_.empty(); })) return;

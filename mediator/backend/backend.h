@@ -83,7 +83,8 @@ class Backend {
 
     // Thread-safe: several units at a time. Completes a sample for the whole tile before it starts the next, so that
     // whole aligned blocks are left when it is stopped; returns within 50 ms of the stop. Never throws because of
-    // scene content; throws Error for device failures and for a renderer that is not among its capabilities.
+    // scene content; throws Error for device failures and for a renderer that is not among its capabilities. The bits of the
+    // film do not depend on the caller's floating-point mode.
     virtual RenderResult render(const view::View& view, const view::WorkUnit& unit, std::stop_token stop) = 0;
 
     // Traces one sample again and returns a log of its path, one line per vertex; the film is not touched.

@@ -7,14 +7,19 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "mediator/base/float_mode.h"
+
 namespace tessera {
 
 // Runs function(first, last) for bands of [0, count), each of `band` or fewer: in the arena, or, without one, one after
-// another in this thread. The same bands either way.
+// another in this thread. The same bands either way, in the standard floating-point mode.
 template <class Function>
 void for_bands(tbb::task_arena* arena, std::size_t count, std::size_t band, const Function& function) {
     const std::size_t bands = (count + band - 1) / band;
-    const auto run = [&](std::size_t i) { function(i * band, std::min(count, (i + 1) * band)); };
+    const auto run = [&](std::size_t i) {
+        const StandardFloatMode mode;
+        function(i * band, std::min(count, (i + 1) * band));
+    };
     if (arena == nullptr) {
         for (std::size_t i = 0; i < bands; ++i) run(i);
     } else {

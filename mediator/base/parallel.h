@@ -6,12 +6,20 @@
 
 #include <cstddef>
 
+#include "mediator/base/float_mode.h"
+
 namespace tessera {
 
-// Runs function(i) for i in [0, count) in the given arena; the arena is always passed in, never global.
+// Runs function(i) for i in [0, count) in the given arena, in the standard floating-point mode; the arena is always passed in,
+// never global.
 template <class Function>
 void parallel_for(tbb::task_arena& arena, std::size_t count, const Function& function) {
-    arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { function(i); }); });
+    arena.execute([&] {
+        tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+            const StandardFloatMode mode;
+            function(i);
+        });
+    });
 }
 
 }  // namespace tessera

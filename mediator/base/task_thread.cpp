@@ -2,6 +2,8 @@
 
 #include <functional>
 
+#include "mediator/base/float_mode.h"
+
 namespace tessera {
 
 TaskThread::TaskThread() : thread_([this](std::stop_token end) { work(end); }) {}
@@ -20,6 +22,7 @@ void TaskThread::post(std::function<void()> task) {
 }
 
 void TaskThread::work(std::stop_token end) {
+    const StandardFloatMode mode;
     std::unique_lock lock(mutex_);
     while (wake_.wait(lock, end, [this] { return !tasks_.empty(); }) && !end.stop_requested()) {
         const std::function<void()> task = std::move(tasks_.front());

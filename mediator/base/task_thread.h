@@ -8,7 +8,7 @@
 
 namespace tessera {
 
-// One thread that runs long tasks in order: builds, pictures, disk access. The destructor drops waiting tasks and waits
+// One thread that runs long tasks in order, in the standard floating-point mode: builds, pictures, disk access. The destructor drops waiting tasks and waits
 // for the running one.
 class TaskThread {
   public:

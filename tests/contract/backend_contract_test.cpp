@@ -13,6 +13,7 @@
 
 #include "mediator/frame/merge.h"
 #include "mediator/frame/render_revision.h"
+#include "tests/numerics/float_mode.h"
 
 namespace tessera::backend {
 namespace {
@@ -47,6 +48,12 @@ TEST_P(BackendContract, CountsEverySampleOnce) {
     EXPECT_EQ(counted, whole.pixel_count() * 8);
     EXPECT_EQ(film.channels, view.channels);
     EXPECT_EQ(film.rect, whole);
+}
+
+TEST_P(BackendContract, TheBitsDoNotDependOnTheFloatModeOfTheCaller) {
+    const FilmTile expected = render(*backend, whole, {0, 2});
+    const test::UnusualFloatMode unusual;
+    EXPECT_TRUE(frame::identical_bits(render(*backend, whole, {0, 2}), expected));
 }
 
 TEST_P(BackendContract, ABlockIsTheMergeOfItsSingleSamplesBitForBit) {
