@@ -5,46 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/numerics/white_materials.h"
 #include "tests/statistics/model.h"
 
 namespace tessera::embree {
 namespace {
-
-// One material of each lobe, white.
-struct Kind {
-    const char* name;
-    scene::Material material;
-    bool clear = false;  // lossless: as bright as the sky
-};
-
-const std::vector<Kind>& kinds() {
-    static const std::vector<Kind> all = [] {
-        const glm::vec4 white(1.0f);
-        const scene::Material rough{.base_color = white, .roughness = 0.4f, .double_sided = true};
-        std::vector<Kind> made{{"dielectric", rough}};
-        made.push_back({"metal", rough});
-        made.back().material.metallic = 1.0f;
-        made.push_back({"mirror", mirror(glm::vec3(1.0f)), true});
-        made.push_back({"brushed", rough});
-        made.back().material.metallic = 1.0f;
-        made.back().material.anisotropy = 0.8f;
-        made.push_back({"coat", rough});
-        made.back().material.clearcoat = 1.0f;
-        made.back().material.clearcoat_roughness = 0.3f;
-        made.push_back({"smooth coat", rough});
-        made.back().material.clearcoat = 1.0f;
-        made.push_back({"sheen", rough});
-        made.back().material.sheen_color = glm::vec3(1.0f);
-        made.back().material.sheen_roughness = 0.5f;
-        made.push_back({"film", rough});
-        made.back().material.iridescence = 1.0f;
-        made.push_back({"clear glass", glass(1.5f), true});
-        made.push_back({"rough glass", glass(1.5f)});
-        made.back().material.roughness = 0.4f;
-        return made;
-    }();
-    return all;
-}
 
 // Scales of x, y and z; `sheared`: shear of x by y.
 struct Shape {
@@ -73,7 +38,7 @@ glm::dmat4 matrix_of(const Shape& shape) {
 // A deformed white sphere in a white sky: its mean is not brighter than the sky, up to the resolution of the energy
 // tables (3e-3), and equal for lossless materials. Non-finite samples fail.
 TEST(ExtremeTransforms, EveryLobeConservesEnergy) {
-    for (const Kind& kind : kinds()) {
+    for (const test::WhiteMaterial& kind : test::white_materials()) {
         double plain = 0.0;
         for (const Shape& shape : Shapes) {
             SCOPED_TRACE(testing::Message() << kind.name << " " << shape.name);
@@ -102,7 +67,7 @@ TEST(ExtremeTransforms, EveryLobeConservesEnergy) {
             // 90 of these: 4.5 standard errors.
             EXPECT_LE(mean, 1.0 + 4.5 * error + 3e-3);
             // Where shading and geometric normals disagree about the side, some light is blocked.
-            if (kind.clear) {
+            if (kind.is_clear) {
                 EXPECT_GE(mean, 1.0 - 4.5 * error - 0.05);
             }
             if (shape.name == std::string("plain")) plain = mean;
@@ -116,7 +81,7 @@ TEST(ExtremeTransforms, EveryLobeConservesEnergy) {
 // A plane stays the same under stretching along itself, flattening across, and mirroring: the picture does not
 // change beyond noise.
 TEST(ExtremeTransforms, APlaneStaysAPlane) {
-    for (const Kind& kind : kinds()) {
+    for (const test::WhiteMaterial& kind : test::white_materials()) {
         if (kind.name == std::string("clear glass") || kind.name == std::string("rough glass")) continue;
         double plain = 0.0, plain_error = 0.0;
         for (const glm::dvec3 scale : {glm::dvec3(1.0), glm::dvec3(-1, 1, 1), glm::dvec3(1e3, 1e3, 1e-9),

@@ -98,6 +98,8 @@ TEST_P(FilmMoments, StayWithinTheDerivedBounds) {
 INSTANTIATE_TEST_SUITE_P(Hard, FilmMoments,
                          testing::Combine(testing::Values(10, 20),
                                           testing::Values(1.0, 10.0, 1e2, 1e3, 1e4, 1e5, 1e6)));
+INSTANTIATE_TEST_SUITE_P(SixteenMillionSamples, FilmMoments,
+                         testing::Combine(testing::Values(24), testing::Values(1.0, 1e3, 1e6)));
 
 // Skewed as light is: few samples carry most of it.
 TEST(FilmMoments, OfFirefliesStayWithinTheBounds) {

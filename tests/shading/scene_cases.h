@@ -349,7 +349,7 @@ inline Step scattered_specular(IN(Case) c, uint kind, bool is_straight) {
 }
 inline Step survivor(IN(Case) c, float choice) {
     Step step = first_step(c);
-    step.goes_on = survives(step.path, RouletteAlwaysFrom, choice);
+    step.goes_on = survives(step.path, choice);
     return step;
 }
 
