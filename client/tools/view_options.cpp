@@ -141,11 +141,11 @@ void ViewOptions::add_to(cli::CommandLine& command) {
                    "specks, but the picture "
                    "is too dark (biased) wherever light exceeds the limit (default: no limit)",
                    clamp);
-    command.choice("--sky-sampling",
-                   "light samples of the sky: by its luminance, or where the surfaces in the picture see it, "
-                   "for rooms with "
-                   "windows (measured before the first sample)",
-                   sky_sampling, {"luminance", "visible"});
+    command.choice(
+        "--sky-sampling",
+        "light samples of the sky: where the surfaces in the picture see it, for rooms with windows "
+        "(measured after the first 2^18 samples), or by its luminance alone",
+        sky_sampling, {"visible", "luminance"});
     command.choice("--pixel-filter", "pixel reconstruction filter", pixel_filter,
                    {"box", "gaussian", "blackman-harris"});
     command.choice("--renderer",
@@ -205,7 +205,8 @@ Expected<ViewPlan> parse_options(const ViewOptions& options) {
                                "' is not a number above 0; leave it out for no limit");
         plan.view.clamp_indirect = most;
     }
-    plan.view.sky_cells_from = options.sky_sampling == "visible" ? 0 : view::NoSkyCells;
+    plan.view.sky_cells_from =
+        options.sky_sampling == "visible" ? view::visible_sky_from(plan.view.window) : view::NoSkyCells;
     for (const view::Renderer renderer : {view::Renderer::PathTracing, view::Renderer::Whitted,
                                           view::Renderer::Raster, view::Renderer::Coverage}) {
         if (options.renderer == view::renderer_name(renderer)) plan.view.renderer = renderer;

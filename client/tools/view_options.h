@@ -26,7 +26,7 @@ struct ViewOptions {
     std::string light_units = "physical";
     std::uint32_t bounces = 8, specular_bounces = 32;
     std::optional<double> clamp;
-    std::string sky_sampling = "luminance";
+    std::string sky_sampling = "visible";
     std::string pixel_filter = "box";
     std::uint64_t seed = 0;
     std::string renderer = "path", path_class = "indirect", feature_rule = "demodulated";

@@ -43,6 +43,7 @@ std::vector<GroupView> DisplayService::views() {
                 view.view.window = {0, 0, static_cast<std::int32_t>(output.view_width),
                                     static_cast<std::int32_t>(output.view_height)};
                 view.view.max_bounces = display.max_bounces;
+                view.view.sky_cells_from = view::visible_sky_from(view.view.window);
                 view.view.filter = display.filter;
                 view.view.channels = {frame::Channel::Color};
                 if (!display.layers.empty()) {

@@ -129,6 +129,14 @@ inline constexpr std::uint32_t UnlimitedBounces = std::numeric_limits<std::uint3
 
 inline constexpr std::uint32_t NoSkyCells = std::numeric_limits<std::uint32_t>::max();
 
+// View::sky_cells_from of a picture of this part, by default. Measuring where the sky is seen takes a node as long as about
+// 2^17 samples (mediator/backend/sky_cells.h), so it waits for twice as many.
+constexpr std::uint32_t visible_sky_from(const Rect& window) {
+    constexpr std::size_t Samples = std::size_t{1} << 18;
+    const std::size_t pixels = window.pixel_count();
+    return pixels == 0 ? NoSkyCells : static_cast<std::uint32_t>((Samples + pixels - 1) / pixels);
+}
+
 inline constexpr std::uint32_t AllLayers = 0xffffffff;  // object layers: bit i is layer i
 
 // What to render, by value: a sample is a pure function of (scene content, view, pixel, sample index). A new revision

@@ -40,7 +40,6 @@ TEST(ViewOptions, AreConvertedToAView) {
                         .bounces = 3,
                         .specular_bounces = 5,
                         .clamp = 2.5,
-                        .sky_sampling = "visible",
                         .pixel_filter = "gaussian",
                         .seed = 9};
     options.crop = "8,4,16,8";
@@ -52,12 +51,21 @@ TEST(ViewOptions, AreConvertedToAView) {
     EXPECT_EQ(plan->view.max_bounces, 3u);
     EXPECT_EQ(plan->view.max_specular_bounces, 5u);
     EXPECT_EQ(plan->view.clamp_indirect, 2.5f);
-    EXPECT_EQ(plan->view.sky_cells_from, 0u);
+    EXPECT_EQ(plan->view.sky_cells_from, (1u << 18) / 128u) << "of the crop";
     EXPECT_EQ(plan->view.seed, 9u);
     EXPECT_EQ(plan->view.pixel_filter.kind, view::PixelFilterKind::Gaussian);
     EXPECT_EQ(plan->import.background, glm::vec3(0.25f, 0.5f, 1.0f));
     const view::View view = view_from(*plan, {.name = "c", .camera = {.vertical_fov = 1.0}});
     EXPECT_NEAR(view.camera.right / view.camera.top, 2.0, 1e-12);
+}
+
+TEST(ViewOptions, TheSkyIsSampledWhereItIsSeenOnceThatPays) {
+    ViewOptions options{.scene = "a.glb", .size = "1000x1000"};
+    EXPECT_EQ(parse_options(options)->view.sky_cells_from, 1u);
+    options.size = "320x180";
+    EXPECT_EQ(parse_options(options)->view.sky_cells_from, 5u);
+    options.sky_sampling = "luminance";
+    EXPECT_EQ(parse_options(options)->view.sky_cells_from, view::NoSkyCells);
 }
 
 TEST(ViewOptions, ErrorsNameTheOption) {

@@ -170,6 +170,14 @@ class Views(WithMaster):
         with self.assertRaisesRegex(tessera.InvalidInput, "32 bits"):
             self.session.open_view(self.POSE, layers=1 << 32)
 
+    def test_sky_sampling(self):
+        self.session.open_view(self.POSE, size=(100, 100))
+        self.assertEqual(self.master.views[1][0].wanted.view.sky_cells_from, 27)
+        self.session.open_view(self.POSE, size=(8, 4), sky_sampling="luminance")
+        self.assertFalse(self.master.views[2][0].wanted.view.HasField("sky_cells_from"))
+        with self.assertRaisesRegex(tessera.InvalidInput, "visible, luminance"):
+            self.session.open_view(self.POSE, sky_sampling="blue")
+
     def test_clamp(self):
         self.session.open_view(self.POSE, size=(8, 4))
         self.assertEqual(self.master.views[1][0].wanted.view.clamp_indirect, 0.0)

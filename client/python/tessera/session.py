@@ -293,12 +293,13 @@ class Session(SessionNames):
     def open_view(self, at: CameraLike, *, size: tuple[int, int] = (1280, 720), spp: int | None = None, picture: str = "png",
                   film: bool = False, name: str = "", filter: str | None = None, renderer: str = "path", bounces: int = 8,
                   seed: int = 0, channels: Sequence[str] = ("radiance",), layers: int = ALL_LAYERS,
-                  clamp: float | None = None, budget: float | None = None, exposure: float | None = None,
-                  view_transform: str = "neutral", adaptive: bool = True) -> View:
+                  clamp: float | None = None, sky_sampling: str = "visible", budget: float | None = None,
+                  exposure: float | None = None, view_transform: str = "neutral", adaptive: bool = True) -> View:
         """A view from a camera of the scene (the object or its path) or a Pose (`look_at`). `picture`: "png", "jpeg", "exr",
         "planes" (filtered float32) or "none"; `film`: also deliver the statistics of `channels`. `layers`: a mask, bit i is
         object layer i; other objects are invisible. `clamp`: most that a path adds to a sample after its second bounce, which
-        makes the picture too dark (biased); None: no limit. `filter`: the denoiser; None: "psvgf" for "png" and "jpeg"
+        makes the picture too dark (biased); None: no limit. `sky_sampling`: light samples of the sky where surfaces in the
+        picture see it, "visible", or by its luminance alone, "luminance". `filter`: the denoiser; None: "psvgf" for "png" and "jpeg"
         without `film`, else none. `budget`: time in seconds for samples, filter and encoding
         together; `spp` is 64 by default, and without limit with a budget: the mean of all pixels, which get the samples that
         they need. Not `adaptive`: all pixels have as many. `exposure` of "png" and "jpeg" in EV, None:
@@ -306,7 +307,7 @@ class Session(SessionNames):
         if filter is None:
             filter = LIVE_FILTER if picture in ("png", "jpeg") and not film else ""
         view = plain_view(size, channels=channels, renderer=renderer, bounces=bounces, seed=seed, filter=filter,
-                          layers=layers, clamp=clamp)
+                          layers=layers, clamp=clamp, sky_sampling=sky_sampling)
         self.aim(view, at)
         if spp is None:
             spp = 64 if budget is None else MAX_SPP
@@ -317,7 +318,7 @@ class Session(SessionNames):
     def render(self, at: CameraLike, *, size: tuple[int, int] = (1280, 720), spp: int | None = None, picture: str = "png",
                film: bool = False, filter: str = "", renderer: str = "path", bounces: int = 8, seed: int = 0,
                channels: Sequence[str] = ("radiance",), layers: int = ALL_LAYERS, clamp: float | None = None,
-               budget: float | None = None, exposure: float | None = None, view_transform: str = "neutral",
+               sky_sampling: str = "visible", budget: float | None = None, exposure: float | None = None, view_transform: str = "neutral",
                min_nodes: int = 1, wait: float = 60.0, noise: float | None = None,
                error: float | None = None, adaptive: bool = True,
                on_progress: Callable[[Progress], None] | None = None) -> Rendered:
@@ -330,7 +331,7 @@ class Session(SessionNames):
         `spp` (of any pixel, 65536 by default) and `budget` are upper bounds then. Not `adaptive`: all pixels get as many
         samples."""
         view = plain_view(size, channels=channels, renderer=renderer, bounces=bounces, seed=seed, filter=filter,
-                          layers=layers, clamp=clamp)
+                          layers=layers, clamp=clamp, sky_sampling=sky_sampling)
         self.aim(view, at)
         if noise is not None and error is not None:
             raise InvalidInput("noise and error exclude each other: leave one out")
