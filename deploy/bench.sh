@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Usage: deploy/bench.sh [--docs]
 #
-# Sets up, builds and runs the benchmarks one after the other (about an hour on 2 cores) and writes them as one page,
+# Sets up, builds and runs the benchmarks one after the other (about an hour and a half on 2 cores) and writes them as one page,
 # out/bench/benchmarks.md. Each figure is next to the limit that bounds it. Run it on an otherwise idle machine.
 #   --docs  writes docs/benchmarks.md instead
 set -euo pipefail
@@ -55,6 +55,7 @@ run adaptive_sampling.json "$bin/tessera" bench adaptive --spp 32,64 --noise 0.2
     --references "$out/references" --json
 run adaptive_error.json "$bin/tessera" bench adaptive --spp "" --noise "" --error 0.03,0.01 --filter fdf --seeds 3 --reference-spp 2048 \
     --references "$out/references" --json
+run transport.json "$bin/tessera" bench transport -o "$out/transport" --json
 run variance.json "$bin/tessera" bench variance --spp 4,16,64 --seeds 12 --json
 run backends.txt "$bin/tessera" bench backends --scenes room-1,studio-1,interior-1,balls:1000000 --spp 4 --repeat 3
 run live.txt "$bin/tessera" bench live
@@ -64,4 +65,5 @@ PYTHONPATH=build/release/python run join.txt /usr/bin/python3 deploy/bench_join.
 
 python3 docs/make_benchmarks.py "$out" "$("$bin/tessera" --version)" >"$out/page"
 mv "$out/page" "$page"
+cp "$out/transport/transport.svg" "$(dirname "$page")/transport.svg"
 echo "bench: wrote $page"

@@ -153,6 +153,22 @@ def adaptive_error_rows(report):
                    f"{error[0]:.2f} to {error[-1]:.2f} | {100 * row['deciding']:.1f} % |")
 
 
+def transport_rows(report):
+    yield "| scene | renderer | relMSE | HDR-FLIP | rays per sample | Mrays/s | Msamples/s | slope | light in 0.1 % of the samples | time to equal error, Cycles = 1 |"
+    yield "|---|---|---|---|---|---|---|---|---|---|"
+    for scene in report["scenes"]:
+        for curve in scene["curves"]:
+            last = curve["points"][-1]
+            rays = f"{last['rays_per_sample']:.2f} | {last['mrays_per_second']:.2f}" if last["rays_per_sample"] else " | "
+            ratio, rare = curve["time_to_equal_error_over_cycles"], curve["light_in_brightest_permille"]
+            yield (f"| `{scene['scene']}` | {curve['renderer']} | {short(last['relmse'])} | {last['hdr_flip']:.4f} | {rays} | "
+                   f"{last['msamples_per_second']:.3f} | {curve['slope']:.2f} | {f'{100 * rare:.1f} %' if rare else ''} | "
+                   f"{f'{ratio:.2f}' if ratio else ''} |")
+    for renderer, ratio in report["mean_time_to_equal_error_over_cycles"].items():
+        if ratio:
+            yield f"| geometric mean | {renderer} | | | | | | | | {ratio:.2f} |"
+
+
 def page(folder, version):
     yield INTRODUCTION
     yield machine(version)
@@ -189,6 +205,15 @@ def page(folder, version):
            "theirs, and their true relMSE over the wanted one. The picture is small, and its samples are few: decisions take a larger part of the "
            f"time than in a large one.\n{measured(folder, 'adaptive_error.json')}")
     yield "\n".join(adaptive_error_rows(errors)) + "\n"
+    transport = json.loads((folder / "transport.json").read_text())
+    spp = transport["scenes"][0]["curves"][0]["points"][-1]["spp"]
+    yield ("## Light transport\n\n"
+           f"Unfiltered pictures of {transport['width']}x{transport['height']} at {spp} samples per pixel: relMSE against two references of "
+           f"{transport['reference_spp']}, how fast it falls with the samples (slope of the logarithms), and relMSE times seconds over that of "
+           "Blender's Cycles, which has the same scene with its own materials and so its own references. `tessera bench transport` writes a page with "
+           "all numbers.\n\n![relMSE over seconds](transport.svg)\n"
+           f"{measured(folder, 'transport.json')}")
+    yield "\n".join(transport_rows(transport)) + "\n"
     for name, heading, text in TEXTS:
         output = "\n".join(line.rstrip() for line in (folder / f"{name}.txt").read_text().strip().split("\n"))
         yield f"## {heading}\n\n{text}\n{measured(folder, name + '.txt')}\n```\n{output}\n```\n"

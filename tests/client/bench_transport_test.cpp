@@ -21,7 +21,7 @@ struct References {
 
 // relMSE of `error` at one sample, falling with the power `slope`; `seconds` for each sample.
 TransportCurve curve(const std::string& renderer, double error, double falls, double seconds) {
-    TransportCurve result{.renderer = renderer, .points = {}};
+    TransportCurve result{.renderer = renderer, .points = {}, .samples = {}};
     for (const std::uint64_t spp : {1, 2, 4, 8, 16}) {
         TransportPoint point{.spp = spp, .seconds = seconds * double(spp)};
         point.relmse.value = error * std::pow(double(spp), falls);
@@ -43,13 +43,57 @@ TEST(BenchTransport, MeasuresHowFastTheErrorFalls) {
 TEST(BenchTransport, ComparesTimesToEqualError) {
     const TransportCurve ours = curve("embree", 0.2, -1.0, 0.5), theirs = curve("cycles", 0.4, -1.0, 1.0);
     EXPECT_NEAR(time_to_equal_error(ours, theirs), 0.25, 1e-12);
-    EXPECT_EQ(time_to_equal_error(ours, {.renderer = "cycles", .points = {}}), 0.0);
+    EXPECT_EQ(time_to_equal_error(ours, {.renderer = "cycles", .points = {}, .samples = {}}), 0.0);
     const std::vector<TransportScene> scenes{
         {.name = "a", .kind = "", .summary = "", .curves = {ours, theirs}},
         {.name = "b", .kind = "", .summary = "", .curves = {curve("embree", 0.4, -1.0, 1.0), theirs}},
         {.name = "without cycles", .kind = "", .summary = "", .curves = {ours}}};
     EXPECT_NEAR(mean_time_to_equal_error(scenes, "embree"), 0.5, 1e-12);
     EXPECT_EQ(mean_time_to_equal_error(scenes, "vulkan"), 0.0);
+}
+
+TEST(BenchTransport, HistogramsAreByPowersOfTwo) {
+    LuminanceHistogram samples;
+    for (const double luminance : {1.0, 1.999, 2.0, 0.5, 0.0, -1.0, std::nan("")}) samples.add(luminance);
+    const auto bin = [&](int exponent) {
+        return samples.bins()[static_cast<std::size_t>(exponent - LuminanceHistogram::First)];
+    };
+    EXPECT_EQ(bin(0), 2u);
+    EXPECT_EQ(bin(1), 1u);
+    EXPECT_EQ(bin(-1), 1u);
+    EXPECT_EQ(samples.black(), 3u);
+    EXPECT_EQ(samples.samples(), 7u);
+    // What is beyond the bins is in the outermost ones.
+    for (const double luminance : {1e-40, 5e-324, 1e30, HUGE_VAL}) samples.add(luminance);
+    EXPECT_EQ(samples.bins().front(), 2u);
+    EXPECT_EQ(samples.bins().back(), 2u);
+}
+
+TEST(BenchTransport, HistogramsMergeInAnyOrder) {
+    std::array<LuminanceHistogram, 3> parts;
+    LuminanceHistogram all;
+    for (int i = 0; i < 300; ++i) {
+        const double luminance = std::exp(0.1 * (i % 71) - 3.0);
+        parts[static_cast<std::size_t>(i % 3)].add(luminance);
+        all.add(luminance);
+    }
+    LuminanceHistogram forwards, backwards;
+    for (std::size_t i = 0; i < 3; ++i) {
+        forwards.merge(parts[i]);
+        backwards.merge(parts[2 - i]);
+    }
+    EXPECT_EQ(forwards.bins(), all.bins());
+    EXPECT_EQ(backwards.bins(), all.bins());
+}
+
+TEST(BenchTransport, FindsTheLightOfRareSamples) {
+    LuminanceHistogram samples;
+    EXPECT_EQ(samples.light_in_brightest(0.5), 0.0) << "no light";
+    for (int i = 0; i < 999; ++i) samples.add(1.0);
+    samples.add(1024.0);
+    EXPECT_NEAR(samples.light_in_brightest(1e-3), 1024.0 / (1024.0 + 999.0), 1e-12);
+    EXPECT_NEAR(samples.light_in_brightest(5e-4), 512.0 / (1024.0 + 999.0), 1e-12);
+    EXPECT_NEAR(samples.light_in_brightest(1.0), 1.0, 1e-12);
 }
 
 TEST(BenchTransport, MeasuresARealScene) {
@@ -79,9 +123,11 @@ TEST(BenchTransport, MeasuresARealScene) {
     EXPECT_LT(points[2].relmse.value, 0.4 * points[0].relmse.value);
     EXPECT_LT(points[2].light_deviation, points[0].light_deviation);
     EXPECT_GT(measured->curves[0].first_picture_seconds, 0.0);
+    EXPECT_EQ(measured->curves[0].samples.samples(), 48u * 32u * HistogramSeeds);
 
     const auto json = nlohmann::json::parse(transport_json({*measured}, plan));
     EXPECT_EQ(json["scenes"][0]["curves"][0]["points"].size(), 3u);
+    EXPECT_EQ(json["scenes"][0]["curves"][0]["histogram"]["samples"], 48 * 32 * HistogramSeeds);
     EXPECT_TRUE(json["mean_time_to_equal_error_over_cycles"]["embree"].is_null()) << "Cycles did not run";
     EXPECT_NE(transport_html({*measured}, plan).find("<svg viewBox"), std::string::npos);
     EXPECT_NE(transport_svg({*measured}).find("xmlns"), std::string::npos);

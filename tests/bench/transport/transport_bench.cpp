@@ -51,18 +51,22 @@ std::optional<TransportCurve> measure(const std::string& backend, const BenchSce
                                       const TransportPlan& plan, const ReferencePair& truth,
                                       tbb::task_arena& arena, const BenchProgress& progress,
                                       const std::stop_token& stop) {
-    TransportCurve curve{.renderer = backend, .points = {}};
+    TransportCurve curve{.renderer = backend, .points = {}, .samples = {}};
     const SteadyClock clock;
     const double before = resident_bytes();
     const TimePoint started = clock.now();
     const Sampler sampler(scene, arena, backend::find_backend(backend));
     const double seeds = plan.seeds;
     const double pixels = double(plan.size.width) * double(plan.size.height);
+    const auto film_of = [&](std::uint32_t seed) {
+        view::View view = sampler.view(plan.size.width, plan.size.height, {frame::Channel::Radiance},
+                                       view::PathClass::Indirect, seed);
+        view.sky_cells_from = view::visible_sky_from(view.window);  // as users get it
+        return sampler.film(view);
+    };
     for (const std::uint64_t spp : plan.spp) curve.points.push_back({.spp = spp});
     for (std::uint32_t seed = 0; seed < plan.seeds; ++seed) {
-        GrowingFilm film =
-            sampler.film(sampler.view(plan.size.width, plan.size.height, {frame::Channel::Radiance},
-                                      view::PathClass::Indirect, seed + 1));
+        GrowingFilm film = film_of(seed + 1);
         if (seed == 0) {
             GrowingFilm first = film;
             if (!sampler.grow(first, 1, stop)) return std::nullopt;
@@ -77,6 +81,13 @@ std::optional<TransportCurve> measure(const std::string& backend, const BenchSce
                         point);
             point.rays += double(film.rays()) / (pixels * double(point.spp)) / seeds;
         }
+    }
+    progress.say(scene.name + ", " + backend + ": histogram of " + std::to_string(HistogramSeeds) +
+                 " samples");
+    for (std::uint32_t seed = 0; seed < HistogramSeeds; ++seed) {
+        GrowingFilm film = film_of(plan.seeds + seed + 1);
+        if (!sampler.grow(film, 1, stop)) return std::nullopt;
+        curve.samples.add(frame::resolve(film.whole(), frame::Channel::Radiance));
     }
     return curve;
 }

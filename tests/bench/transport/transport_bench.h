@@ -10,6 +10,7 @@
 
 #include "client/tools/values.h"
 #include "tests/bench/filters/scene_bench.h"
+#include "tests/bench/transport/luminance_histogram.h"
 
 namespace tessera::tools::bench {
 
@@ -35,12 +36,16 @@ struct TransportPoint {
     double rays = 0.0;             // per sample
 };
 
+// Films of one sample for the histogram of a curve.
+inline constexpr std::uint32_t HistogramSeeds = 32;
+
 struct TransportCurve {
     std::string renderer;  // a back-end or "cycles"
     double first_picture_seconds =
         0.0;                    // building the scene, and one sample per pixel; of Cycles: import, then one
     double memory_bytes = 0.0;  // growth of the process by scene and film; 0: unknown
     std::vector<TransportPoint> points;  // ascending
+    LuminanceHistogram samples;          // single ones; empty: unknown
 };
 
 // Adds one of plan.seeds pictures to the means, with its rays per sample if they are known.

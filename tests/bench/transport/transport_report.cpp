@@ -15,6 +15,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// Share of the samples of which the light is reported.
+constexpr double Brightest = 1e-3;
+
 const TransportCurve* find(const TransportScene& scene, const std::string& renderer) {
     const auto found = std::ranges::find(scene.curves, renderer, &TransportCurve::renderer);
     return found == scene.curves.end() ? nullptr : &*found;
@@ -33,6 +36,16 @@ double over_cycles(const TransportScene& scene, const TransportCurve& curve) {
 
 Json null_if_zero(double value) {
     return value == 0.0 ? Json() : Json(value);
+}
+
+// Exponents of the bins that have samples, with their counts.
+Json histogram_json(const LuminanceHistogram& samples) {
+    Json bins = Json::object();
+    for (std::size_t i = 0; i < samples.bins().size(); ++i) {
+        if (samples.bins()[i] > 0)
+            bins[std::to_string(LuminanceHistogram::First + int(i))] = samples.bins()[i];
+    }
+    return {{"samples", samples.samples()}, {"black", samples.black()}, {"log2_luminance", bins}};
 }
 
 Json curve_json(const TransportScene& scene, const TransportCurve& curve, const TransportPlan& plan) {
@@ -56,6 +69,8 @@ Json curve_json(const TransportScene& scene, const TransportCurve& curve, const 
             {"memory_bytes", null_if_zero(curve.memory_bytes)},
             {"slope", null_if_zero(slope(curve, SlopeFromSpp))},
             {"time_to_equal_error_over_cycles", null_if_zero(over_cycles(scene, curve))},
+            {"light_in_brightest_permille", null_if_zero(curve.samples.light_in_brightest(Brightest))},
+            {"histogram", curve.samples.samples() == 0 ? Json() : histogram_json(curve.samples)},
             {"points", points}};
 }
 
@@ -113,15 +128,18 @@ std::string summary(const std::vector<TransportScene>& scenes) {
     std::string html =
         "<div class=\"scroll\"><table><tr><th>scene</th><th>renderer</th><th>slope</th><th>time to equal "
         "error over "
-        "Cycles</th><th>first picture, s</th><th>memory, MiB</th></tr>\n";
+        "Cycles</th><th>light in 0.1 % of the samples</th><th>first picture, s</th><th>memory, "
+        "MiB</th></tr>\n";
     for (const TransportScene& scene : scenes) {
         for (const TransportCurve& curve : scene.curves) {
             html += fmt::format(
-                "<tr{}><td>{}</td><td>{}</td><td>{:.2f}</td><td>{}</td><td>{:.2f}</td><td>{}</td></tr>\n",
+                "<tr{}><td>{}</td><td>{}</td><td>{:.2f}</td><td>{}</td><td>{}</td><td>{:.2f}</td><td>{}</"
+                "td></tr>\n",
                 &curve == &scene.curves.front() ? " class=\"first\"" : "", escaped(scene.name),
                 escaped(curve.renderer), slope(curve, SlopeFromSpp),
-                or_dash(over_cycles(scene, curve), "{:.2f}"), curve.first_picture_seconds,
-                or_dash(curve.memory_bytes / (1 << 20), "{:.0f}"));
+                or_dash(over_cycles(scene, curve), "{:.2f}"),
+                or_dash(100.0 * curve.samples.light_in_brightest(Brightest), "{:.1f} %"),
+                curve.first_picture_seconds, or_dash(curve.memory_bytes / (1 << 20), "{:.0f}"));
         }
     }
     return html + "</table></div>\n";
@@ -161,6 +179,8 @@ std::string transport_text(const TransportScene& scene, const TransportPlan& pla
         if (curve.memory_bytes > 0.0) text += fmt::format(", {:.0f} MiB", curve.memory_bytes / (1 << 20));
         if (const double ratio = over_cycles(scene, curve); ratio > 0.0)
             text += fmt::format(", time to equal error over Cycles {:.2f}", ratio);
+        if (const double light = curve.samples.light_in_brightest(Brightest); light > 0.0)
+            text += fmt::format(", {:.1f} % of the light in 0.1 % of the samples", 100.0 * light);
         text += "\n";
     }
     return text;
