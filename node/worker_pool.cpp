@@ -2,8 +2,6 @@
 
 #include <exception>
 
-#include "mediator/base/float_mode.h"
-
 namespace tessera::node {
 
 namespace {
@@ -50,7 +48,6 @@ void WorkerPool::stop(UnitId unit) {
 }
 
 void WorkerPool::work(std::stop_token end) {
-    const StandardFloatMode mode;
     std::unique_lock lock(mutex_);
     while (wake_.wait(lock, end, [this] { return !waiting_.empty(); })) {
         const Job job = std::move(waiting_.front());

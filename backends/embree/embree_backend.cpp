@@ -58,6 +58,7 @@ class EmbreeBackend final : public Backend {
 
     std::vector<std::string> probe(const view::View& view, std::uint32_t x, std::uint32_t y,
                                    std::uint64_t sample) override {
+        const StandardFloatMode mode;
         require_renderer(view::TracingRenderers, view);
         const std::shared_lock lock(mutex_);
         PathTracer tracer(adapter_.tables(), adapter_.scene(), view);

@@ -84,6 +84,7 @@ class VulkanBackend final : public Backend {
 
     std::vector<std::string> probe(const view::View& view, std::uint32_t x, std::uint32_t y,
                                    std::uint64_t sample) override {
+        const StandardFloatMode mode;
         require_renderer(capabilities_.renderers, view);
         return on_device([&] {
             const std::vector<shading::Affine3x4> places =
