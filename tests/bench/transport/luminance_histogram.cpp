@@ -9,6 +9,13 @@
 
 namespace tessera::tools::bench {
 
+LuminanceHistogram::LuminanceHistogram(const frame::Image& picture) {
+    for (std::size_t i = 0; i + 2 < picture.values.size(); i += 3) {
+        add(picture::luminance(double(picture.values[i]), double(picture.values[i + 1]),
+                               double(picture.values[i + 2])));
+    }
+}
+
 void LuminanceHistogram::add(double luminance) {
     if (!(luminance > 0.0)) {
         ++black_;
@@ -17,13 +24,6 @@ void LuminanceHistogram::add(double luminance) {
     const int exponent =
         std::isfinite(luminance) ? std::clamp(std::ilogb(luminance), First, End - 1) : End - 1;
     ++bins_[static_cast<std::size_t>(exponent - First)];
-}
-
-void LuminanceHistogram::add(const frame::Image& picture) {
-    for (std::size_t i = 0; i + 2 < picture.values.size(); i += 3) {
-        add(picture::luminance(double(picture.values[i]), double(picture.values[i + 1]),
-                               double(picture.values[i + 2])));
-    }
 }
 
 void LuminanceHistogram::merge(const LuminanceHistogram& other) {

@@ -14,10 +14,12 @@ class LuminanceHistogram {
     // Exponents of the first bin and after the last; what is outside is in these.
     static constexpr int First = -32, End = 32;
 
+    LuminanceHistogram() = default;
+    // Each pixel is a sample.
+    explicit LuminanceHistogram(const frame::Image& picture);
+
     // Negative and NaN count as black.
     void add(double luminance);
-    // Each pixel is a sample.
-    void add(const frame::Image& picture);
     void merge(const LuminanceHistogram& other);
 
     // Samples from 2^(First + i) to below twice that.

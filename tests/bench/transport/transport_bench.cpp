@@ -87,7 +87,7 @@ std::optional<TransportCurve> measure(const std::string& backend, const BenchSce
     for (std::uint32_t seed = 0; seed < HistogramSeeds; ++seed) {
         GrowingFilm film = film_of(plan.seeds + seed + 1);
         if (!sampler.grow(film, 1, stop)) return std::nullopt;
-        curve.samples.add(frame::resolve(film.whole(), frame::Channel::Radiance));
+        curve.samples.merge(LuminanceHistogram(frame::resolve(film.whole(), frame::Channel::Radiance)));
     }
     return curve;
 }

@@ -139,14 +139,14 @@ int run(const TransportOptions& options) {
 
 Command transport_command(cli::CommandLine& bench) {
     const auto options = std::make_shared<TransportOptions>();
-    cli::CommandLine& line =
-        bench.command("transport",
-                      "Error of unfiltered pictures over samples and time, of each "
-                      "back-end and, where Debian's blender is installed, of "
-                      "Cycles: relMSE against two independent references, HDR-FLIP, the "
-                      "light that is kept, rays per sample, time of the "
-                      "first picture, memory. Writes one page with curves (transport.html), the curves alone "
-                      "(transport.svg) and all numbers (transport.json).");
+    cli::CommandLine& line = bench.command(
+        "transport",
+        "Error of unfiltered pictures over samples and time, of each "
+        "back-end and, where Debian's blender is installed, of "
+        "Cycles: relMSE against two independent references, HDR-FLIP, the "
+        "light that is kept, the share of it in the brightest samples, rays per sample, time of the "
+        "first picture, memory. Writes one page with curves (transport.html), the curves alone "
+        "(transport.svg) and all numbers (transport.json).");
     line.option("-o,--output", "folder to write", options->output);
     line.option("--scenes", "a,b: built-in scenes or scene files (default: all)", options->scenes);
     line.option("--backends", "a,b: back-ends (default: all)", options->backends);
