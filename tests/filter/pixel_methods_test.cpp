@@ -5,11 +5,8 @@
 #include <array>
 #include <functional>
 
-#include "master/filter/catalog.h"
 #include "master/filter/pixel/edge_model.h"
-#include "mediator/filter/choice.h"
 #include "tests/filter/pixel_pictures.h"
-#include "tests/support/cpu_time.h"
 
 namespace tessera::filter {
 namespace {
@@ -162,38 +159,6 @@ TEST(Separable, ComesCloserToBruteForceWithSamplesAndIsAsGood) {
         if (n > 16) continue;
         EXPECT_LT(mean_squared_error(fast, truth), 1.05 * mean_squared_error(exact, truth)) << n;
     }
-}
-
-// By the shortest of many times: others who use the caches make single ones longer, and not both methods alike.
-TEST(Separable, IsFiveTimesFasterThanBruteForce) {
-    const Inputs inputs =
-        synthetic_inputs(192, 192, 4, [](std::uint32_t x, std::uint32_t y, std::uint64_t i) {
-            return shadowed_texture(192, 192, x, y, i);
-        });
-    tbb::task_arena arena(1);
-    struct Method {
-        Choice choice;
-        std::unique_ptr<Filter> filter;
-        Output out;
-    };
-    const auto make = [&](const std::string& text) {
-        Method method{parse_choice(text, catalog()).value(), nullptr, {}};
-        method.filter = method.choice.entry->make(inputs.width, inputs.height);
-        return method;
-    };
-    const auto seconds_of = [&](Method& method) {
-        const double start = tessera::test::thread_cpu_seconds();
-        method.filter->run(inputs, method.choice.values, method.out, {arena, {}});
-        return tessera::test::thread_cpu_seconds() - start;
-    };
-    Method brute = make("pixel:method=brute,adaptive=off,blend=off"),
-           separable = make("pixel:adaptive=off,blend=off");
-    double shortest_brute = 1e9, shortest_separable = 1e9;
-    for (int i = 0; i < 25; ++i) {
-        shortest_brute = std::min(shortest_brute, seconds_of(brute));
-        shortest_separable = std::min(shortest_separable, seconds_of(separable));
-    }
-    EXPECT_GT(shortest_brute / shortest_separable, 5.0);
 }
 
 // Two regions and a mixed column between them.
