@@ -13,14 +13,13 @@ void alpha_filter(const RTCFilterFunctionNArguments* arguments) {
         const std::uint32_t triangle = RTCHitN_primID(arguments->hit, count, i);
         const glm::vec2 barycentric{RTCHitN_u(arguments->hit, count, i), RTCHitN_v(arguments->hit, count, i)};
         const float distance = RTCRayN_tfar(arguments->ray, count, i);
-        if (context->connects && shading::is_thin_wall(*context->scene, instance)) {
-            context->meets_walls = true;
-            arguments->valid[i] = 0;
-        } else if (shading::skips(context->skip, instance, distance) ||
-                   !shading::stops_at(*context->scene, context->skip, instance, triangle, barycentric,
-                                      context->numbers)) {
-            arguments->valid[i] = 0;
-        }
+        const bool passes = shading::skips(context->skip, instance, distance) ||
+                            !shading::stops_at(*context->scene, context->skip, instance, triangle,
+                                               barycentric, context->numbers);
+        const bool is_wall =
+            !passes && context->walls != nullptr && shading::is_thin_wall(*context->scene, instance);
+        if (is_wall) shading::meet_thin_wall(*context->walls, {instance, triangle, barycentric, distance});
+        if (passes || is_wall) arguments->valid[i] = 0;
     }
 }
 

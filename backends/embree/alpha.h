@@ -6,6 +6,7 @@
 
 #include "mediator/shading/rays.h"
 #include "mediator/shading/sampler.h"
+#include "mediator/shading/thin_walls.h"
 
 namespace tessera::embree {
 
@@ -15,8 +16,7 @@ struct TraceContext {
     const shading::Scene* scene = nullptr;
     shading::Sampler numbers{};  // of (pixel, bounce, kind of ray), and the sample
     shading::Skip skip = shading::skip_nothing();
-    bool connects = false;             // a ray to a light
-    mutable bool meets_walls = false;  // it has met thin walls (is_thin_wall)
+    shading::ThinWalls* walls = nullptr;  // that a ray to a light has met; null for other rays
 };
 
 // Embree filter function: rejects hits that the ray has already passed (Skip), that alpha lets pass or that are unlit

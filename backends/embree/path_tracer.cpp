@@ -43,9 +43,9 @@ std::optional<backend::SkyCells> PathTracer::make_sky_cells(std::uint32_t thread
             },
         .sees_sky =
             [&](const backend::SkyPlace& place, const glm::vec3& direction, std::uint32_t number) {
-                bool meets_walls = false;
+                shading::ThinWalls walls;
                 return !trace_occluded(Context{{}, {scene_, view_, top_, 0.0f}}, place.origin, direction,
-                                       shading::infinity(), shading::Sampler(number, 0u), meets_walls);
+                                       shading::infinity(), shading::Sampler(number, 0u), walls);
             }};
     return backend::make_sky_cells(tables_, view_, rays, threads, stop);
 }

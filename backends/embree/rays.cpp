@@ -44,14 +44,14 @@ bool trace_closest(const Rays& rays, const shading::Ray& ray, const shading::Sam
 }
 
 bool trace_occluded(const Rays& rays, const glm::vec3& origin, const glm::vec3& segment, float far,
-                    const shading::Sampler& numbers, bool& meets_walls) {
+                    const shading::Sampler& numbers, shading::ThinWalls& walls) {
     TraceContext started = start(rays, numbers);
-    started.connects = true;
+    walls = shading::no_thin_walls();
+    started.walls = &walls;
     started.skip.unlit = true;
     RTCRay ray{origin.x,  origin.y,  origin.z, shading::NearestHit, segment.x, segment.y,
                segment.z, rays.time, far,      rays.view.layers,    0,         0};
     rtcOccluded1(rays.top, &started.embree, &ray);
-    meets_walls = started.meets_walls;
     return ray.tfar < 0.0f;
 }
 

@@ -4,6 +4,7 @@
 
 #include "mediator/shading/rays.h"
 #include "mediator/shading/sampler.h"
+#include "mediator/shading/thin_walls.h"
 
 // The rays of the shared transport (mediator/shading/transport.h).
 namespace tessera::embree {
@@ -19,6 +20,6 @@ struct Rays {
 bool trace_closest(const Rays& rays, const shading::Ray& ray, const shading::Sampler& numbers,
                    const shading::Skip& skip, shading::Hit& hit);
 bool trace_occluded(const Rays& rays, const glm::vec3& origin, const glm::vec3& segment, float far,
-                    const shading::Sampler& numbers, bool& meets_walls);
+                    const shading::Sampler& numbers, shading::ThinWalls& walls);
 
 }  // namespace tessera::embree

@@ -2,6 +2,7 @@
 
 #include "mediator/backend/path_log.h"
 #include "mediator/shading/bvh_trace.h"
+#include "mediator/shading/thin_walls.h"
 #include "mediator/shading/transport.h"
 
 namespace tessera::vulkan {
@@ -14,13 +15,13 @@ struct HostContext : backend::PathLogger {
     shading::BvhItems pool;
     std::uint32_t top;
     shading::Skip skip = shading::skip_nothing();
-    bool* meets_walls = nullptr;  // not null: a ray to a light
+    shading::ThinWalls* walls = nullptr;  // not null: a ray to a light
 };
 
 inline bool stops_ray(const HostContext& context, const shading::Hit& candidate,
                       const shading::Sampler& numbers) {
-    if (context.meets_walls != nullptr && shading::is_thin_wall(context.scene, candidate.instance)) {
-        *context.meets_walls = true;
+    if (context.walls != nullptr && shading::is_thin_wall(context.scene, candidate.instance)) {
+        *context.walls = shading::unknown_thin_walls();
         return false;
     }
     if (shading::skips(context.skip, candidate.instance, candidate.distance)) return false;
@@ -40,10 +41,10 @@ inline bool trace_closest(const HostContext& context, const shading::Ray& ray,
 }
 
 inline bool trace_occluded(const HostContext& context, const glm::vec3& origin, const glm::vec3& segment,
-                           float far, const shading::Sampler& numbers, bool& meets_walls) {
-    meets_walls = false;
+                           float far, const shading::Sampler& numbers, shading::ThinWalls& walls) {
+    walls = shading::no_thin_walls();
     HostContext asked = context;
-    asked.meets_walls = &meets_walls;
+    asked.walls = &walls;
     asked.skip.unlit = true;
     return shading::bvh_trace(context.pool, context.top, origin, segment, shading::NearestHit, far,
                               shading::BvhAny | shading::BvhAlpha | shading::BvhMotion, context.view.layers,

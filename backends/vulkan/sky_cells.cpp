@@ -39,9 +39,9 @@ std::optional<backend::SkyCells> make_sky_cells(Device& device, const GpuScene& 
             },
         .sees_sky =
             [&](const backend::SkyPlace& place, const glm::vec3& direction, std::uint32_t number) {
-                bool meets_walls = false;
+                shading::ThinWalls walls;
                 return !trace_occluded(context(0.0f, nullptr), place.origin, direction, shading::infinity(),
-                                       shading::Sampler(number, 0u), meets_walls);
+                                       shading::Sampler(number, 0u), walls);
             }};
     return backend::make_sky_cells(tables, view, rays, threads, stop);
 }

@@ -4,6 +4,7 @@
 #include "mediator/shading/equiangular.h"
 #include "mediator/shading/media.h"
 #include "mediator/shading/paths.h"
+#include "mediator/shading/thin_walls.h"
 
 // The steps of a path from vertex to vertex, shared by all renderers. Next event estimation with one light
 // sample per vertex, combined with BSDF sampling by the power heuristic (Veach 1997). At perfect speculars
@@ -15,9 +16,9 @@
 //       the closest hit that is not skipped; false if there is none. Distances are in
 //       lengths of the direction.
 //   bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, IN(Sampler) numbers,
-//                       OUT(bool) meets_walls);
+//                       OUT(ThinWalls) walls);
 //       whether anything but a thin wall (is_thin_wall) is hit beyond NearestHit and before `far`, in
-//       multiples of the segment's length; if not, whether a thin wall is
+//       multiples of the segment's length; if not, the thin walls that are
 // both of which call stops_at with these numbers for instances that are alpha_tested. GLSL: declared before this
 // file is included. C++: found in the namespace of the context, as are the functions that log a path when one
 // sample is replayed (probe); they do nothing in shaders.
@@ -172,6 +173,25 @@ WITH_CONTEXT inline void receive_light(IN(Context) context, INOUT(PathSample) fo
     log_light(context, direction, light);
 }
 
+// The part of the light from this direction that arrives through the walls.
+WITH_CONTEXT inline vec3 through_thin_walls(IN(Context) context, IN(ThinWalls) walls, vec3 direction) {
+    vec3 passed = vec3(1.0f);
+    for (uint i = 0u; i < walls.count; ++i) {
+        CONST_REF(Hit) hit = i == 0u ? walls.first : walls.second;
+        const Surface wall = make_surface(context.scene, hit, direction, 0.0f, no_media(), context.time);
+        passed *= passes_straight(wall) ? wall.specular.refraction : vec3(0.0f);
+    }
+    return passed;
+}
+
+inline PathClassInfo class_of_light(IN(View) view, IN(Path) path, IN(BsdfValue) bsdf) {
+    PathClassInfo info =
+        PathClassInfo(path.class_info.scatter_count + 1u, false, path.class_info.diffuse_fraction);
+    if (records(view, RecordsDiffuse) && path.class_info.scatter_count == 0u)
+        info.diffuse_fraction = diffuse_fraction(bsdf);
+    return info;
+}
+
 // Equiangular samples with a smaller weight than this are subject to Russian roulette.
 inline constexpr float MinConnectionWeight = 0.125f;
 
@@ -213,24 +233,26 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
     const vec3 origin = leaving(surface, light.direction).origin;
     bool is_open = (context.scene.features & FeatureIndexMatchedMedia) != 0u;
     const Sampler shadow_numbers = shadow_ray_numbers(path);
+    const uvec4 containing_media =
+        media_after(context.scene, path.containing_media, surface, light.direction);
+    vec3 passed = vec3(1.0f);
     // Shadow rays have directions of any length.
     const vec3 segment = light.distant ? light.direction : light.target - origin;
     if (!is_open) {
         const float far = light.distant ? infinity() : 1.0f;
         path.rays += 1u;
-        bool meets_walls = false;
-        if (trace_occluded(context, origin, segment, far, shadow_numbers, meets_walls)) return;
-        is_open = (context.scene.features & FeatureThinGlass) != 0u && meets_walls;
+        ThinWalls walls = no_thin_walls();
+        if (trace_occluded(context, origin, segment, far, shadow_numbers, walls)) return;
+        if ((context.scene.features & FeatureThinGlass) != 0u && walls.count > 0u) {
+            is_open = !KeepsThinWalls || walls.count > MaxThinWalls || containing_media.x != NoInstance;
+            if (!is_open) passed = through_thin_walls(context, walls, light.direction);
+            if (!(largest(passed) > 0.0f)) return;
+        }
     }
-    vec3 arriving = path.throughput * bsdf.value * light.radiance * (weight / light.pdf);
-    const vec3 intensity = equiangular.is_equiangular ? vec3(0.0f) : path.probability * light.intensity;
-    PathClassInfo class_info =
-        PathClassInfo(path.class_info.scatter_count + 1u, false, path.class_info.diffuse_fraction);
-    if (records(context.view, RecordsDiffuse) && path.class_info.scatter_count == 0u) {
-        class_info.diffuse_fraction = diffuse_fraction(bsdf);
-    }
-    const uvec4 containing_media =
-        media_after(context.scene, path.containing_media, surface, light.direction);
+    vec3 arriving = path.throughput * bsdf.value * light.radiance * (weight / light.pdf) * passed;
+    const vec3 intensity =
+        equiangular.is_equiangular ? vec3(0.0f) : path.probability * light.intensity * passed;
+    const PathClassInfo class_info = class_of_light(context.view, path, bsdf);
     if (is_open) {
         // Holds the shadow ray until the path's next ray is known (start_connection).
         connection = Connection(true, arriving, intensity, light.distant, light.target, class_info,

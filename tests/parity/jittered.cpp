@@ -44,10 +44,10 @@ bool trace_closest(const JitteredContext& context, const shading::Ray& ray, cons
 }
 
 bool trace_occluded(const JitteredContext& context, const glm::vec3& origin, const glm::vec3& segment,
-                    float far, const shading::Sampler& numbers, bool& meets_walls) {
+                    float far, const shading::Sampler& numbers, shading::ThinWalls& walls) {
     const embree::Context& exact = context;
     Jitter jitter(shading::hash_combine(numbers.seed, numbers.index), origin);
-    return embree::trace_occluded(exact, origin, jitter(segment), far, numbers, meets_walls);
+    return embree::trace_occluded(exact, origin, jitter(segment), far, numbers, walls);
 }
 
 }  // namespace

@@ -196,6 +196,25 @@ inline float covered_area(IN(Case) c, float cosine, float width) {
     const float second = vector_length(c.instance.linear * (c.triangle.r - c.triangle.p));
     return 1e-16f + first * second * cosine + (footprint > 0.0f ? width * width / footprint : 0.0f);
 }
+// Up to four, with repetitions.
+inline ThinWalls met_walls(IN(Case) c, uint bits) {
+    ThinWalls walls = bits % 5u == 0u ? unknown_thin_walls() : no_thin_walls();
+    for (uint i = 0u; i < bits % 7u; ++i) {
+        Hit hit = c.hit;
+        hit.triangle = (bits >> i) % 4u;
+        hit.distance = float(hit.triangle < 2u ? 0u : hit.triangle);
+        meet_thin_wall(walls, hit);
+    }
+    return walls;
+}
+inline ThinWalls two_walls(IN(Case) c) {
+    ThinWalls walls = no_thin_walls();
+    walls.count = 2u;
+    walls.first = c.hit;
+    walls.second = c.hit;
+    walls.second.barycentric = vec2(c.hit.barycentric.y, c.hit.barycentric.x);
+    return walls;
+}
 inline Surface with_scattering(IN(Case) c) {
     Surface surface = c.surface;
     set_scattering(surface, c.context.scene, c.instance, c.mesh, c.material, c.corners, c.hit.barycentric,

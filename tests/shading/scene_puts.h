@@ -215,6 +215,11 @@ inline void put(INOUT(Outputs) y, IN(Skip) skip) {
     put(y, skip.instance);
     put(y, vec3(skip.near, skip.far, skip.unlit ? 1.0f : 0.0f));
 }
+inline void put(INOUT(Outputs) y, IN(ThinWalls) walls) {
+    put(y, walls.count);
+    put(y, walls.first.triangle);
+    put(y, walls.second.triangle);
+}
 inline void put(INOUT(Outputs) y, IN(Boundary) boundary) {
     put(y, boundary.position);
     put(y, boundary.error);

@@ -28,6 +28,7 @@ SHADING_END
 
 #include "mediator/shading/rays.h"
 #include "mediator/shading/sampler.h"
+#include "mediator/shading/thin_walls.h"
 
 SHADING_BEGIN
 
@@ -52,8 +53,9 @@ inline bool trace_closest(IN(Context) context, IN(Ray) ray, IN(Sampler) numbers,
 }
 
 inline bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, IN(Sampler) numbers,
-                           OUT(bool) meets_walls) {
-    meets_walls = (hash_u32(numbers.index ^ numbers.seed) & 4u) == 0u;
+                           OUT(ThinWalls) walls) {
+    walls = no_thin_walls();
+    if ((hash_u32(numbers.index ^ numbers.seed) & 4u) == 0u) walls = unknown_thin_walls();
     if (!is_ray(origin, segment) || !(far > 0.0f) || context.scene.instance_count == 0u) return false;
     return (hash_u32(numbers.index ^ numbers.seed) & 3u) == 0u;
 }

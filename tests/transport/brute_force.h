@@ -2,6 +2,7 @@
 #define TESSERA_TESTS_TRANSPORT_BRUTE_FORCE_H
 
 #include "mediator/shading/materials.h"
+#include "mediator/shading/thin_walls.h"
 #include "mediator/shading/triangle_points.h"
 
 // Rays tested against every triangle, the same in C++ and on a device, so that only the transport can differ.
@@ -91,8 +92,8 @@ inline bool trace_closest(IN(Context) context, IN(Ray) ray, IN(Sampler) numbers,
 }
 
 inline bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, IN(Sampler) numbers,
-                           OUT(bool) meets_walls) {
-    meets_walls = false;
+                           OUT(ThinWalls) walls) {
+    walls = no_thin_walls();
     Hit hit;
     Skip skip = skip_nothing();
     skip.unlit = true;

@@ -8,6 +8,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "mediator/shading/materials.h"
 #include "mediator/shading/rays.h"
+#include "mediator/shading/thin_walls.h"
 
 #ifdef POOL_AS_TEXELS
 layout(set = 0, binding = 0) uniform usamplerBuffer pool_texels;
@@ -65,7 +66,7 @@ bool trace_closest(IN(Context) context, IN(Ray) ray, IN(Sampler) numbers, IN(Ski
     return hit.instance != NoInstance;
 }
 
-bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, IN(Sampler) numbers, OUT(bool) meets_walls) {
+bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, IN(Sampler) numbers, OUT(ThinWalls) walls) {
     Context asked = context;
     asked.connects = true;
     asked.skip.unlit = true;
@@ -73,7 +74,8 @@ bool trace_occluded(IN(Context) context, vec3 origin, vec3 segment, float far, I
     const bool is_hit = find_hit(BvhItems(context.pool), context.top, origin, segment, NearestHit, far,
                                  BvhAny | scene_question(), seen_layers(context), context.time, asked, numbers)
                             .instance != NoInstance;
-    meets_walls = wall_is_met;
+    walls = no_thin_walls();
+    if (wall_is_met) walls = unknown_thin_walls();
     return is_hit;
 }
 

@@ -47,8 +47,8 @@ class EmbreeCaster final : public RayCaster {
     shading::Hit hit_of(const embree::Context& context, const shading::RayQuery& ray) const {
         shading::Hit hit{.instance = shading::NoInstance};
         if (kind_ == RayQueryKind::Any) {
-            bool meets_walls = false;
-            if (embree::trace_occluded(context, ray.origin, ray.direction, ray.far, {}, meets_walls))
+            shading::ThinWalls walls;
+            if (embree::trace_occluded(context, ray.origin, ray.direction, ray.far, {}, walls))
                 hit.instance = 0;
         } else {
             embree::trace_closest(context, {ray.origin, ray.direction}, {}, shading::skip_nothing(), hit);
