@@ -18,8 +18,10 @@
 #include "client/tools/interrupts.h"
 #include "client/tools/pictures.h"
 #include "client/tools/terminal_picture.h"
+#include "client/tools/tev/viewer.h"
 #include "client/tools/values.h"
 #include "mediator/picture/exposure.h"
+#include "mediator/picture/film_exr.h"
 #include "mediator/picture/picture_encoder.h"
 #include "mediator/picture/view_transform.h"
 #include "mediator/view/placed_cameras.h"
@@ -36,7 +38,7 @@ struct WatchOptions {
     std::string title, name = "watch", view, camera;
     FilterOption filter;
     DisplayTransformOptions display;
-    std::optional<std::string> size, output, noise_map, time;
+    std::optional<std::string> size, output, noise_map, tev, time;
     std::uint64_t spp = 256;
     std::string adaptive = "on";
     std::uint64_t frames = 0;
@@ -65,6 +67,23 @@ frame::Image image_of(const client::Frame& frame, std::uint32_t width, std::uint
     return image;
 }
 
+// Layers of coarse frames at the size of the picture.
+std::vector<picture::Layer> enlarged(std::vector<picture::Layer> layers, const frame::Image& picture) {
+    for (picture::Layer& layer : layers) {
+        const frame::Image& from = layer.image;
+        if (from.width == picture.width && from.height == picture.height) continue;
+        frame::Image to(picture.width, picture.height, from.components);
+        for (std::size_t y = 0; y < to.height; ++y) {
+            for (std::size_t x = 0; x < to.width; ++x) {
+                const std::size_t row = y * from.height / to.height, column = x * from.width / to.width;
+                std::ranges::copy(from.pixel(row * from.width + column), to.pixel(y * to.width + x).begin());
+            }
+        }
+        layer.image = std::move(to);
+    }
+    return layers;
+}
+
 // Pictures for the eye are denoised, and light for other programs is as sampled, unless an option asks otherwise.
 bool is_exr(const std::optional<std::string>& output) {
     return output && picture_format(*output) == PictureFormat::Exr;
@@ -76,10 +95,11 @@ class Watch {
     explicit Watch(const WatchOptions& options) : options_(options) {}
 
     int run() {
-        to_terminal_ = !options_.output && is_terminal();
-        if (!options_.output && !to_terminal_)
-            return report_error(WatchName, cli::ExitUsage,
-                                "cannot show the frames: standard output is not a terminal; add -o FILE");
+        to_terminal_ = !options_.output && !options_.tev && is_terminal();
+        if (!options_.output && !options_.tev && !to_terminal_)
+            return report_error(
+                WatchName, cli::ExitUsage,
+                "cannot show the frames: standard output is not a terminal; add -o FILE or --tev HOST");
         if (options_.output && !picture_format(*options_.output))
             return report_error(WatchName, cli::ExitUsage,
                                 "-o: the file name must end in .exr, .png or .jpg");
@@ -104,6 +124,7 @@ class Watch {
             limit = *parsed;
         }
         if (const auto code = choose_size()) return *code;
+        if (options_.tev) viewer_.emplace(*options_.tev, "tessera watch");
         session_ = client::connect(options_.address, std::make_shared<scene::BlobStore>(), clock_,
                                    session_settings(options_.name, interrupts_.token()));
         const auto joined = session_->join(
@@ -138,7 +159,7 @@ class Watch {
         session::ViewRequest request{.name = options_.view,
                                      .stop = {.spp = options_.spp, .uniform = options_.adaptive == "off"},
                                      .picture = session::PictureEncoding::Planes,
-                                     .film = options_.noise_map.has_value()};
+                                     .film = options_.noise_map || options_.tev};
         const bool is_shared = !options_.view.empty();
         if (!is_shared) {
             // There is no camera until a client loads a scene.
@@ -158,7 +179,12 @@ class Watch {
                                    static_cast<std::int32_t>(size_.height)};
             request.view.camera = view::pose(*camera, size_.width, size_.height);
             request.view.channels = {frame::Channel::Radiance};
-            if (options_.noise_map) request.view.channels.insert(frame::Channel::BlockVariance);
+            if (request.film) request.view.channels.insert(frame::Channel::BlockVariance);
+            if (options_.tev) {
+                for (const frame::Channel channel :
+                     {frame::Channel::Albedo, frame::Channel::Normal, frame::Channel::Depth})
+                    request.view.channels.insert(channel);
+            }
             request.view.filter = filter_;
         }
         is_shared ? session_->share_view(View, request) : session_->request_view(View, request);
@@ -194,6 +220,7 @@ class Watch {
         if (!display_.transform.exposure) display_.transform.exposure = picture::measured_exposure(image);
         if (options_.output)
             write_picture(*options_.output, image, display_.transform, display_.custom_view());
+        if (viewer_) show_in_tev(frame, image);
         // Of coarse pictures, with one sample a pixel, no noise is known.
         if (options_.noise_map && frame.scale == 1 && frame.film) write_noise(*frame.film);
         char text[200];
@@ -213,6 +240,12 @@ class Watch {
         }
     }
 
+    void show_in_tev(const client::Frame& frame, const frame::Image& image) {
+        std::vector<picture::Layer> layers{{"", {"R", "G", "B"}, image}};
+        if (frame.film) layers = enlarged(picture::film_layers(*frame.film, image), image);
+        if (const auto problem = viewer_->show(layers)) std::cerr << "tessera watch: " << *problem << "\n";
+    }
+
     void write_noise(const frame::FilmTile& film) {
         if (film.channels.contains(frame::Channel::Radiance))
             return write_noise_map(*options_.noise_map, film);
@@ -227,6 +260,7 @@ class Watch {
     DisplayChoice display_;
     std::string filter_;
     bool to_terminal_ = false, camera_wait_logged_ = false, has_no_noise_ = false;
+    std::optional<tev::Viewer> viewer_;
     std::unique_ptr<client::Session> session_;
 };
 
@@ -264,6 +298,11 @@ Command watch_command(cli::CommandLine& program) {
     line.option("--noise-map",
                 "also write a PNG of the noise of each pixel, from 0.01 (black) over 0.1 (red) to 1 (white)",
                 options->noise_map);
+    line.option(
+        "--tev",
+        "show every frame and its layers (albedo, normal, depth, noise and more) in the image viewer tev "
+        "at HOST or HOST:PORT (default port: 14158)",
+        options->tev);
     line.flag("--once", "exit when the frame is complete", options->once);
     line.option("--frames", "exit after this many frames; 0 = never", options->frames);
     line.option("--time", "exit after this time, as 10s or 5m", options->time);
@@ -271,6 +310,7 @@ Command watch_command(cli::CommandLine& program) {
               options->no_wait);
     line.examples({"tessera watch --master tcp://render-1:7420 --keys ~/.tessera",
                    "tessera watch --master tcp://127.0.0.1:7420 -o now.png --once --spp 64",
+                   "tessera watch --master tcp://127.0.0.1:7420 --tev localhost",
                    "tessera watch --master tcp://127.0.0.1:7420 --view ann/1"});
     return {WatchName, [options](std::string_view) { return run(*options); }};
 }

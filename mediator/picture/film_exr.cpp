@@ -228,11 +228,8 @@ void check(const frame::FilmTile& film) {
 
 }  // namespace
 
-void write_film_exr(const std::string& path, const FilmFile& file,
-                    const std::optional<frame::Image>& filtered, Statistics statistics,
-                    const std::vector<Layer>& more) {
+std::vector<Layer> film_layers(const frame::FilmTile& film, const std::optional<frame::Image>& filtered) {
     using frame::Channel;
-    const frame::FilmTile& film = file.film;
     const std::vector<std::string> rgb{"R", "G", "B"};
     const Channel picture = film.channels.contains(Channel::Radiance) ? Channel::Radiance : Channel::Color;
     std::vector<Layer> layers;
@@ -240,12 +237,8 @@ void write_film_exr(const std::string& path, const FilmFile& file,
         layers.push_back(
             {"", filtered->components == 4 ? std::vector<std::string>{"R", "G", "B", "A"} : rgb, *filtered});
     }
-    std::map<std::string, std::string> attributes = file.attributes;
     for (const frame::ChannelInfo& entry : frame::channel_table()) {
         if (!film.channels.contains(entry.channel)) continue;
-        attributes["tessera/merge/" + std::string(entry.name)] = std::string(enumerator_name(entry.rule));
-        if (statistics == Statistics::Include)
-            layers.push_back(plane_layer(Prefix + "." + std::string(entry.name), film, entry));
         if (entry.channel == Channel::ObjectIndex) {
             layers.push_back(object_layer(film));
         } else if (entry.channel == picture) {
@@ -253,8 +246,6 @@ void write_film_exr(const std::string& path, const FilmFile& file,
             if (picture != Channel::Radiance) continue;
             add_variances(film, layers);
             layers.push_back(noise_layer(film));
-            attributes["tessera.varianceOf"] =
-                film.channels.contains(Channel::BlockVariance) ? "mean-stratified" : "mean-independent";
         } else if (entry.channel == Channel::Alpha && !filtered) {
             layers.push_back({"", {"A"}, frame::resolve(film, Channel::Alpha)});
         } else if (entry.channel != Channel::HalfBufferA && !entry.is_derived()) {
@@ -263,6 +254,25 @@ void write_film_exr(const std::string& path, const FilmFile& file,
         }
     }
     layers.push_back(counts_layer(film));
+    return layers;
+}
+
+void write_film_exr(const std::string& path, const FilmFile& file,
+                    const std::optional<frame::Image>& filtered, Statistics statistics,
+                    const std::vector<Layer>& more) {
+    using frame::Channel;
+    const frame::FilmTile& film = file.film;
+    std::vector<Layer> layers = film_layers(film, filtered);
+    std::map<std::string, std::string> attributes = file.attributes;
+    for (const frame::ChannelInfo& entry : frame::channel_table()) {
+        if (!film.channels.contains(entry.channel)) continue;
+        attributes["tessera/merge/" + std::string(entry.name)] = std::string(enumerator_name(entry.rule));
+        if (statistics == Statistics::Include)
+            layers.push_back(plane_layer(Prefix + "." + std::string(entry.name), film, entry));
+    }
+    if (film.channels.contains(Channel::Radiance))
+        attributes["tessera.varianceOf"] =
+            film.channels.contains(Channel::BlockVariance) ? "mean-stratified" : "mean-independent";
     if (statistics == Statistics::Include && file.state) add_state(film, *file.state, layers, attributes);
     layers.insert(layers.end(), more.begin(), more.end());
     write_exr(path, file.width, file.height, film.rect, layers, attributes);

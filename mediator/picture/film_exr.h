@@ -23,9 +23,12 @@ struct FilmFile {
 
 enum class Statistics { Omit, Include };
 
-// One EXR: R G B (A) is `filtered`, if given (3 or 4 components), and layer `raw` the unfiltered radiance;
-// otherwise R G B is the radiance. Further layers: its variance of the mean, its noise (noise_map.h), every other
-// channel of the film resolved, object ids, sample counts; each channel's merge rule among the attributes.
+// What viewers show of a film: R G B (A) is `filtered`, if given (3 or 4 components), and layer `raw` the unfiltered radiance;
+// otherwise R G B is the radiance. Further layers: its variance of the mean, its noise (noise_map.h), every other channel of the
+// film resolved, object ids, sample counts.
+std::vector<Layer> film_layers(const frame::FilmTile& film, const std::optional<frame::Image>& filtered);
+
+// One EXR: the layers of the film, with each channel's merge rule among the attributes.
 // Statistics::Include adds the film itself, plane by plane (layers statistics.CHANNEL), and its state, if there is one
 // (film_state_layers.h), from which read_film_exr() restores both bit by bit. The file is never incomplete; throws Error{Io}.
 void write_film_exr(const std::string& path, const FilmFile& file,

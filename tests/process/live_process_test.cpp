@@ -13,10 +13,12 @@
 #include "client/import/import.h"
 #include "client/session.h"
 #include "mediator/base/hash.h"
+#include "mediator/picture/exr_reader.h"
 #include "mediator/picture/png_reader.h"
 #include "mediator/scene/fields.h"
 #include "mediator/view/placed_cameras.h"
 #include "tests/process/real_cluster.h"
+#include "tests/support/fake_tev.h"
 
 namespace tessera::test {
 namespace {
@@ -133,6 +135,36 @@ TEST_F(LiveProcess, WatchShowsDenoisedPicturesUnlessAskedNotTo) {
     EXPECT_NE(usual, samples);
     EXPECT_EQ(watched("usual.exr", {}), watched("none.exr", {"--filter", "none"}))
         << "light for other programs";
+}
+
+TEST_F(LiveProcess, WatchShowsFramesAndLayersInTev) {
+    test::FakeTev tev;
+    ChildProcess watch(
+        cluster.folder().path(), "watch-tev", "tessera",
+        {"watch", "--master", cluster.endpoint(), "--keys", cluster.keys(), "--size", "96x64", "--spp", "32",
+         "--once", "--filter", "none", "-o", cluster.folder() / "now.exr", "--tev", tev.address()});
+    tev.read();
+    ASSERT_EQ(watch.wait(60s).value_or(-1), 0) << watch.err();
+    EXPECT_EQ(tev.name, "tessera watch");
+    EXPECT_EQ(tev.width, 96);
+    EXPECT_EQ(tev.height, 64);
+    for (const char* channel :
+         {"R", "G", "B", "variance.R", "noise.Y", "albedo.G", "normal.Z", "depth.Z", "samples.count"})
+        EXPECT_TRUE(std::ranges::count(tev.channels, channel) == 1) << channel;
+    const frame::Image picture = picture::read_exr(cluster.folder() / "now.exr").image;
+    for (std::size_t i = 0; i < picture.pixel_count(); ++i) {
+        ASSERT_EQ(tev.planes["R"][i], picture.pixel(i)[0]) << i;
+        ASSERT_EQ(tev.planes["B"][i], picture.pixel(i)[2]) << i;
+    }
+    const auto [least, most] = std::ranges::minmax(tev.planes["samples.count"]);
+    EXPECT_GE(least, 16.0f);
+    EXPECT_GT(most, 0.0f);
+
+    ChildProcess refused(
+        cluster.folder().path(), "watch-no-tev", "tessera",
+        {"watch", "--master", cluster.endpoint(), "--keys", cluster.keys(), "--tev", "127.0.0.1:1"});
+    EXPECT_EQ(refused.wait(60s).value_or(-1), 69);
+    EXPECT_NE(refused.err().find("cannot reach tev at 127.0.0.1:1"), std::string::npos) << refused.err();
 }
 
 TEST_F(LiveProcess, WatchWritesANoiseMap) {
