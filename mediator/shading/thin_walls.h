@@ -5,7 +5,7 @@
 #include "mediator/shading/rays.h"
 
 // Thin walls (is_thin_wall) that a ray to a light has met. The light is attenuated by them without tracing a ray from wall to
-// wall: up to two, since only the product of two numbers is the same in any order, which acceleration structures do not promise.
+// wall. Up to two are kept, found in any order, which acceleration structures do not promise.
 RECORDS_BEGIN
 
 struct ThinWalls {

@@ -173,15 +173,18 @@ WITH_CONTEXT inline void receive_light(IN(Context) context, INOUT(PathSample) fo
     log_light(context, direction, light);
 }
 
-// The part of the light from this direction that arrives through the walls.
-WITH_CONTEXT inline vec3 through_thin_walls(IN(Context) context, IN(ThinWalls) walls, vec3 direction) {
-    vec3 passed = vec3(1.0f);
+// What arrives through the walls of light from this direction; in the order of the ray, as a connection computes it, so that
+// both have the same rounding errors.
+WITH_CONTEXT inline void pass_thin_walls(IN(Context) context, IN(ThinWalls) walls, vec3 direction,
+                                         INOUT(vec3) light, INOUT(vec3) intensity) {
+    const bool is_reversed = walls.count == 2u && walls.second.distance < walls.first.distance;
     for (uint i = 0u; i < walls.count; ++i) {
-        CONST_REF(Hit) hit = i == 0u ? walls.first : walls.second;
+        CONST_REF(Hit) hit = (i == 0u) != is_reversed ? walls.first : walls.second;
         const Surface wall = make_surface(context.scene, hit, direction, 0.0f, no_media(), context.time);
-        passed *= passes_straight(wall) ? wall.specular.refraction : vec3(0.0f);
+        const vec3 passed = passes_straight(wall) ? wall.specular.refraction : vec3(0.0f);
+        light *= passed;
+        intensity *= passed;
     }
-    return passed;
 }
 
 inline PathClassInfo class_of_light(IN(View) view, IN(Path) path, IN(BsdfValue) bsdf) {
@@ -235,7 +238,8 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
     const Sampler shadow_numbers = shadow_ray_numbers(path);
     const uvec4 containing_media =
         media_after(context.scene, path.containing_media, surface, light.direction);
-    vec3 passed = vec3(1.0f);
+    vec3 arriving = path.throughput * bsdf.value * light.radiance * (weight / light.pdf);
+    vec3 intensity = equiangular.is_equiangular ? vec3(0.0f) : path.probability * light.intensity;
     // Shadow rays have directions of any length.
     const vec3 segment = light.distant ? light.direction : light.target - origin;
     if (!is_open) {
@@ -245,13 +249,10 @@ WITH_CONTEXT inline void add_lights(IN(Context) context, INOUT(Path) path, IN(Su
         if (trace_occluded(context, origin, segment, far, shadow_numbers, walls)) return;
         if ((context.scene.features & FeatureThinGlass) != 0u && walls.count > 0u) {
             is_open = !KeepsThinWalls || walls.count > MaxThinWalls || containing_media.x != NoInstance;
-            if (!is_open) passed = through_thin_walls(context, walls, light.direction);
-            if (!(largest(passed) > 0.0f)) return;
+            if (!is_open) pass_thin_walls(context, walls, light.direction, arriving, intensity);
+            if (!(largest(arriving) > 0.0f)) return;
         }
     }
-    vec3 arriving = path.throughput * bsdf.value * light.radiance * (weight / light.pdf) * passed;
-    const vec3 intensity =
-        equiangular.is_equiangular ? vec3(0.0f) : path.probability * light.intensity * passed;
     const PathClassInfo class_info = class_of_light(context.view, path, bsdf);
     if (is_open) {
         // Holds the shadow ray until the path's next ray is known (start_connection).

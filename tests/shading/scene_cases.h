@@ -213,7 +213,13 @@ inline ThinWalls two_walls(IN(Case) c) {
     walls.first = c.hit;
     walls.second = c.hit;
     walls.second.barycentric = vec2(c.hit.barycentric.y, c.hit.barycentric.x);
+    walls.second.distance = c.path.rays % 2u == 0u ? 0.0f : infinity();
     return walls;
+}
+inline vec3 passed_walls(IN(Case) c, vec3 direction, vec3 light) {
+    vec3 passed = light, intensity = vec3(1.0f);
+    pass_thin_walls(c.context, two_walls(c), direction, passed, intensity);
+    return passed * (1.0f + intensity);
 }
 inline Surface with_scattering(IN(Case) c) {
     Surface surface = c.surface;
