@@ -68,8 +68,9 @@ TEST_F(OutputProcesses, FramesArePresentedTogether) {
     {
         const MovingScene moving(wall);
         for (const std::string& name : Names) ASSERT_TRUE(shows_more(name, 60)) << outputs.at(name).err();
+        // On a fast machine 60 frames are shown before a fifth edit.
+        EXPECT_TRUE(happens([&] { return check_logs() > 4; })) << "nothing was edited";
     }
-    EXPECT_GT(check_logs(), 4u) << "nothing was edited";
     std::map<std::uint64_t, std::vector<double>> times;
     std::uint64_t from = 0, to = ~std::uint64_t{0};
     for (const std::string& name : Names) {
