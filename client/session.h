@@ -128,6 +128,8 @@ class Session {
     void close_view(std::uint64_t number);  // discards the view
     // The newest frame received; acknowledges it, so that the master sends the next one.
     std::optional<Frame> next_frame(TimePoint deadline, std::stop_token stop);
+    // The newest frame of this view, if one has been received; acknowledges it likewise.
+    std::optional<Frame> take_frame(std::uint64_t number);
     // The latest progress, if any since the last call.
     std::optional<session::ViewProgress> take_progress(std::uint64_t number);
     // The summary of a view that has ended; returned once.

@@ -83,6 +83,14 @@ std::optional<Frame> Session::next_frame(TimePoint deadline, std::stop_token sto
     return frame;
 }
 
+std::optional<Frame> Session::take_frame(std::uint64_t number) {
+    Implementation& self = *implementation_;
+    auto frame = self.frames.extract(number);
+    if (frame.empty()) return std::nullopt;
+    self.link.send(wire::FrameTaken{number, frame.mapped().number});
+    return std::move(frame.mapped());
+}
+
 std::optional<session::ViewProgress> Session::take_progress(std::uint64_t number) {
     auto news = implementation_->progress.extract(number);
     return news.empty() ? std::nullopt : std::optional(news.mapped());

@@ -160,9 +160,10 @@ def transport_rows(report):
         for curve in scene["curves"]:
             last = curve["points"][-1]
             rays = f"{last['rays_per_sample']:.2f} | {last['mrays_per_second']:.2f}" if last["rays_per_sample"] else " | "
+            slope = f"{curve['slope']:.2f}" if curve["slope"] else ""  # none of a single number of samples
             ratio, rare = curve["time_to_equal_error_over_cycles"], curve["light_in_brightest_permille"]
             yield (f"| `{scene['scene']}` | {curve['renderer']} | {short(last['relmse'])} | {last['hdr_flip']:.4f} | {rays} | "
-                   f"{last['msamples_per_second']:.3f} | {curve['slope']:.2f} | {f'{100 * rare:.1f} %' if rare else ''} | "
+                   f"{last['msamples_per_second']:.3f} | {slope} | {f'{100 * rare:.1f} %' if rare else ''} | "
                    f"{f'{ratio:.2f}' if ratio else ''} |")
     for renderer, ratio in report["mean_time_to_equal_error_over_cycles"].items():
         if ratio:
@@ -205,6 +206,13 @@ def page(folder, version):
            "theirs, and their true relMSE over the wanted one. The picture is small, and its samples are few: decisions take a larger part of the "
            f"time than in a large one.\n{measured(folder, 'adaptive_error.json')}")
     yield "\n".join(adaptive_error_rows(errors)) + "\n"
+    yield from transport_section(folder)
+    for name, heading, text in TEXTS:
+        output = "\n".join(line.rstrip() for line in (folder / f"{name}.txt").read_text().strip().split("\n"))
+        yield f"## {heading}\n\n{text}\n{measured(folder, name + '.txt')}\n```\n{output}\n```\n"
+
+
+def transport_section(folder):
     transport = json.loads((folder / "transport.json").read_text())
     spp = transport["scenes"][0]["curves"][0]["points"][-1]["spp"]
     yield ("## Light transport\n\n"
@@ -214,9 +222,6 @@ def page(folder, version):
            "all numbers.\n\n![relMSE over seconds](transport.svg)\n"
            f"{measured(folder, 'transport.json')}")
     yield "\n".join(transport_rows(transport)) + "\n"
-    for name, heading, text in TEXTS:
-        output = "\n".join(line.rstrip() for line in (folder / f"{name}.txt").read_text().strip().split("\n"))
-        yield f"## {heading}\n\n{text}\n{measured(folder, name + '.txt')}\n```\n{output}\n```\n"
 
 
 def main():

@@ -198,6 +198,13 @@ view::DisplayTransform used_transform(const std::vector<std::string>& paths,
     return transform;
 }
 
+std::vector<picture::Layer> layers_of(const client::ViewResult& result) {
+    if (!result.film()) return {};
+    std::optional<frame::Image> filtered;
+    if (result.has_picture() && !is_encoded(result)) filtered = interleaved(result.frame);
+    return picture::film_layers(*result.film(), filtered);
+}
+
 void write_pictures(const std::vector<std::string>& paths, const session::ViewRequest& request,
                     const client::ViewResult& result, const Origin& origin, picture::Statistics statistics,
                     const picture::CustomView* custom) {

@@ -30,6 +30,9 @@ void write_pictures(const std::vector<std::string>& paths, const session::ViewRe
                     const client::ViewResult& result, const Origin& origin, picture::Statistics statistics,
                     const picture::CustomView* custom = nullptr);
 
+// What an EXR of the result shows, if it has a film.
+std::vector<picture::Layer> layers_of(const client::ViewResult& result);
+
 // An EXR without a film, a PNG or a JPEG, of linear R, G, B (A).
 void write_picture(const std::string& path, const frame::Image& image,
                    const view::DisplayTransform& transform, const picture::CustomView* custom = nullptr);

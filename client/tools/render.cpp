@@ -11,12 +11,14 @@
 #include "client/tools/cluster_options.h"
 #include "client/tools/continued_film.h"
 #include "client/tools/frame_names.h"
+#include "client/tools/frame_picture.h"
 #include "client/tools/host_info.h"
 #include "client/tools/interrupts.h"
 #include "client/tools/pictures.h"
 #include "client/tools/progress_line.h"
 #include "client/tools/render_options.h"
 #include "client/tools/render_report.h"
+#include "client/tools/tev/viewer.h"
 #include "mediator/frame/resolve.h"
 #include "mediator/picture/exr_writer.h"
 
@@ -54,6 +56,7 @@ class Render {
         if (const auto code = load_film()) return *code;
         if (const auto code = import(UsualFirstId)) return *code;
         if (stopped()) return interrupted("nothing was rendered");
+        if (plan_.tev) viewer_.emplace(*plan_.tev, std::filesystem::path(plan_.outputs.front()).filename());
         if (plan_.sequence && !scene_.playback)
             return report_error(name_, ExitBadInput, "--frames: the scene has no animation");
         connect();
@@ -233,15 +236,27 @@ class Render {
         const auto show = [&](const session::ViewProgress& progress) {
             line.show(where_ + describe(progress, plan_.job));
         };
+        const std::function<void(const client::Frame&)> preview = [&](const client::Frame& frame) {
+            const Rect& window = plan_.job.view.window;
+            const frame::Image picture = picture_of(frame, static_cast<std::uint32_t>(window.width),
+                                                    static_cast<std::uint32_t>(window.height));
+            const bool is_denoised = !plan_.job.view.filter.empty();
+            show_in_tev(
+                layers_of(frame, picture, is_denoised ? Samples::AreDenoised : Samples::AreThePicture));
+        };
         try {
             result_ = client::render(
                 *session_, plan_.job, show, interrupts_.token(),
                 plan_.sequence ? client::Session::AfterEnd::Keep : client::Session::AfterEnd::Close,
-                film_ ? &film_->film : nullptr);
+                film_ ? &film_->film : nullptr, viewer_ ? preview : nullptr);
         } catch (const Error& error) {
             if (!film_ || error.code() != ErrorCode::Refused) throw;
             throw Error(error.code(), "--continue '" + film_->path + "': " + error.what());
         }
+    }
+
+    void show_in_tev(const std::vector<picture::Layer>& layers) {
+        if (const auto problem = viewer_->show(layers)) log_.warning(*problem);
     }
 
     // Complete pictures only: the fractions of a partial picture would be wrong.
@@ -288,6 +303,7 @@ class Render {
                        {std::filesystem::path(plan_.view.scene).filename().string(), camera_.name, hash,
                         film_ ? listed_kinds(film_->kinds) : std::vector<std::string>()},
                        plan_.statistics, custom);
+        if (viewer_) show_in_tev(layers_of(result_));
         std::vector<std::string> written = outputs;
         if (plan_.noise_map) {
             write_noise_map(*plan_.noise_map, *result_.film());
@@ -317,6 +333,7 @@ class Render {
     import::CameraInfo camera_;
     std::optional<EmbeddedCluster> embedded_;
     std::unique_ptr<client::Session> session_;  // says goodbye before the embedded cluster stops
+    std::optional<tev::Viewer> viewer_;
     client::ViewResult result_;
     std::optional<ContinuedFilm> film_;
     std::optional<std::uint32_t> frame_;  // of a sequence, the one that is rendered

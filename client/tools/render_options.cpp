@@ -133,7 +133,7 @@ Expected<void> check_noise_map(const RenderOptions& options) {
     return check_place("--noise-map", *options.noise_map);
 }
 
-// Channels (AOVs) are requested only if an EXR is written.
+// Channels (AOVs) are requested only if an EXR is written, or if tev shows them.
 bool any_exr(const std::vector<std::string>& outputs) {
     return std::any_of(outputs.begin(), outputs.end(), [](const std::string& output) {
         return picture_format(output) == PictureFormat::Exr;
@@ -147,7 +147,7 @@ frame::ChannelSet channels_for(const RenderOptions& options) {
         all.erase(Color);  // derived from Radiance
         return all;
     }
-    if (any_exr(options.outputs))
+    if (any_exr(options.outputs) || options.tev)
         return {Radiance, LowVariance, HighVariance, Albedo, Normal, Depth, ObjectIndex, BlockVariance};
     if (options.noise_map) return {Radiance, BlockVariance};
     return {Radiance};
@@ -172,7 +172,7 @@ Expected<void> set_filter(const RenderOptions& options, session::ViewRequest& jo
         if (auto fine = check_available(*filter); !fine) return fine;
     }
     if (options.detach) return {};  // see set_detached()
-    job.film = any_exr(options.outputs) || options.noise_map;
+    job.film = any_exr(options.outputs) || options.noise_map || options.tev;
     const PictureFormat format = *picture_format(options.outputs.front());
     job.picture = options.outputs.size() > 1 || job.film ? session::PictureEncoding::Planes
                   : format == PictureFormat::Png         ? session::PictureEncoding::Png
@@ -193,6 +193,7 @@ Expected<void> set_detached(const RenderOptions& options, RenderPlan& plan) {
     if (options.frames) return wrong("--detach and --frames exclude each other");
     if (options.save_statistics) return wrong("--detach and --save-statistics exclude each other");
     if (options.json) return wrong("--detach and --json exclude each other; see tessera jobs --json");
+    if (options.tev) return wrong("--detach and --tev exclude each other: wait for the picture");
     if (options.outputs.size() > 1)
         return wrong("--detach stores a single picture: give one -o, or none for a PNG");
     session::ViewRequest& job = plan.job;
@@ -245,6 +246,28 @@ Expected<void> set_coverage(const RenderOptions& options, RenderPlan& plan) {
     return {};
 }
 
+// How many samples.
+void add_samples_to(cli::CommandLine& command, RenderOptions& options) {
+    command.option("--spp", "samples per pixel (64)", options.spp);
+    command.option("--time",
+                   "time budget, as 800ms or 10s, spent on the pixels that need it; with --denoise it "
+                   "includes denoising and encoding; with --spp, --noise or --error it is an upper bound",
+                   options.time);
+    command.option(
+        "--noise",
+        "samples where they are needed, until the unfiltered picture has this relative error (the root "
+        "of relMSE, as of tessera compare), say 0.02; --spp (of any pixel) and --time are upper bounds",
+        options.noise);
+    command.option("--error",
+                   "the same until the picture as it is written, denoised or not, has this relMSE by the "
+                   "master's estimate, say 0.001: noise and bias of the denoiser",
+                   options.error);
+    command.choice("--adaptive",
+                   "on: with --time, --noise or --error pixels get the samples that they need; off: all get "
+                   "as many",
+                   options.adaptive, {"on", "off"});
+}
+
 void add_cluster_to(cli::CommandLine& command, RenderOptions& options) {
     command.option("--backend", "back-end of the embedded nodes", options.backend);
     if (backend::has_device_choice()) {
@@ -285,28 +308,15 @@ void RenderOptions::add_to(cli::CommandLine& command) {
     view.add_to(command);
     command.option("-o,--output", "picture to write, .exr, .png or .jpg; may be given several times",
                    outputs);
-    command.option("--spp", "samples per pixel (64)", spp);
-    command.option("--time",
-                   "time budget, as 800ms or 10s, spent on the pixels that need it; with --denoise it "
-                   "includes denoising and encoding; with --spp, --noise or --error it is an upper bound",
-                   time);
-    command.option(
-        "--noise",
-        "samples where they are needed, until the unfiltered picture has this relative error (the root "
-        "of relMSE, as of tessera compare), say 0.02; --spp (of any pixel) and --time are upper bounds",
-        noise);
-    command.option("--error",
-                   "the same until the picture as it is written, denoised or not, has this relMSE by the "
-                   "master's estimate, say 0.001: noise and bias of the denoiser",
-                   error);
-    command.choice("--adaptive",
-                   "on: with --time, --noise or --error pixels get the samples that they need; off: all get "
-                   "as many",
-                   adaptive, {"on", "off"});
+    add_samples_to(command, *this);
     command.option(
         "--noise-map",
         "also write a PNG of the noise of each pixel, from 0.01 (black) over 0.1 (red) to 1 (white)",
         noise_map);
+    command.option("--tev",
+                   "show the picture and its layers while they are rendered in the image viewer tev at HOST "
+                   "or HOST:PORT (default port: 14158)",
+                   tev);
     command.option(
         "--continue",
         "go on with the film of this EXR, written with --save-statistics: of the same scene, with the "
@@ -361,6 +371,7 @@ Expected<RenderPlan> parse_options(const RenderOptions& options) {
     if (auto fine = check_outputs(options); !fine) return tl::unexpected(fine.error());
     if (auto fine = check_noise_map(options); !fine) return tl::unexpected(fine.error());
     plan.noise_map = options.noise_map;
+    plan.tev = options.tev;
     if (auto fine = set_sequence(options, plan); !fine) return tl::unexpected(fine.error());
     auto embedded = embedded_settings(options);
     if (!embedded) return tl::unexpected(embedded.error());

@@ -23,7 +23,7 @@ struct RenderOptions {
     std::optional<std::uint64_t> spp, nodes, threads;
     std::optional<std::string> time, backend, device, cache, master, keys, wait_nodes, frames;
     std::optional<double> fps, noise, error;
-    std::optional<std::string> noise_map, continued;
+    std::optional<std::string> noise_map, continued, tev;
     std::string user = "editor";
     std::string policy = "mixed", adaptive = "on";
     FilterOption filter;
@@ -53,6 +53,7 @@ struct RenderPlan {
     session::ViewRequest job;              // view with channels, without camera
     std::vector<std::string> outputs;      // of a sequence: patterns for frame_name
     std::optional<std::string> noise_map;  // a picture of the noise, as write_noise_map() does
+    std::optional<std::string> tev;        // where that viewer listens
     std::optional<std::string> continued;  // a film file that the picture goes on with
     ViewOptions given;                     // the options of the view as typed
     std::optional<Sequence> sequence;

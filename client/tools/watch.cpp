@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -15,13 +14,13 @@
 #include "client/tools/display_transform_options.h"
 #include "client/tools/filter_options.h"
 #include "client/tools/formatted.h"
+#include "client/tools/frame_picture.h"
 #include "client/tools/interrupts.h"
 #include "client/tools/pictures.h"
 #include "client/tools/terminal_picture.h"
 #include "client/tools/tev/viewer.h"
 #include "client/tools/values.h"
 #include "mediator/picture/exposure.h"
-#include "mediator/picture/film_exr.h"
 #include "mediator/picture/picture_encoder.h"
 #include "mediator/picture/view_transform.h"
 #include "mediator/view/placed_cameras.h"
@@ -44,45 +43,6 @@ struct WatchOptions {
     std::uint64_t frames = 0;
     bool once = false, no_wait = false;
 };
-
-// RGB of the frame at the full size of the view; coarse frames are upsampled to larger pixels.
-frame::Image image_of(const client::Frame& frame, std::uint32_t width, std::uint32_t height) {
-    frame::Image image(width, height, 3);
-    const std::size_t pixels = std::size_t{frame.width} * frame.height;
-    if (frame.components < 3 || frame.picture.size() != pixels * frame.components * sizeof(float))
-        throw Error(
-            ErrorCode::InvalidInput,
-            "the master sent a picture whose size does not match its header: check that master and client "
-            "are of the same version");
-    std::vector<float> values(pixels * frame.components);
-    std::memcpy(values.data(), frame.picture.data(), frame.picture.size());
-    for (std::uint32_t y = 0; y < height; ++y) {
-        const std::size_t row = std::size_t{std::min(y / frame.scale, frame.height - 1)} * frame.width;
-        for (std::uint32_t x = 0; x < width; ++x) {
-            const std::size_t from = row + std::min(x / frame.scale, frame.width - 1);
-            for (std::size_t c = 0; c < 3; ++c)
-                image.values[3 * (std::size_t{y} * width + x) + c] = values[c * pixels + from];
-        }
-    }
-    return image;
-}
-
-// Layers of coarse frames at the size of the picture.
-std::vector<picture::Layer> enlarged(std::vector<picture::Layer> layers, const frame::Image& picture) {
-    for (picture::Layer& layer : layers) {
-        const frame::Image& from = layer.image;
-        if (from.width == picture.width && from.height == picture.height) continue;
-        frame::Image to(picture.width, picture.height, from.components);
-        for (std::size_t y = 0; y < to.height; ++y) {
-            for (std::size_t x = 0; x < to.width; ++x) {
-                const std::size_t row = y * from.height / to.height, column = x * from.width / to.width;
-                std::ranges::copy(from.pixel(row * from.width + column), to.pixel(y * to.width + x).begin());
-            }
-        }
-        layer.image = std::move(to);
-    }
-    return layers;
-}
 
 // Pictures for the eye are denoised, and light for other programs is as sampled, unless an option asks otherwise.
 bool is_exr(const std::optional<std::string>& output) {
@@ -215,7 +175,7 @@ class Watch {
     void show(const client::Frame& frame, std::uint64_t count) {
         const std::uint32_t width = options_.view.empty() ? size_.width : frame.width * frame.scale;
         const std::uint32_t height = options_.view.empty() ? size_.height : frame.height * frame.scale;
-        const frame::Image image = image_of(frame, width, height);
+        const frame::Image image = picture_of(frame, width, height);
         // Measured on the first frame that is not black, and kept: brightness must not pump while the scene is edited.
         if (!display_.transform.exposure) display_.transform.exposure = picture::measured_exposure(image);
         if (options_.output)
@@ -241,9 +201,11 @@ class Watch {
     }
 
     void show_in_tev(const client::Frame& frame, const frame::Image& image) {
-        std::vector<picture::Layer> layers{{"", {"R", "G", "B"}, image}};
-        if (frame.film) layers = enlarged(picture::film_layers(*frame.film, image), image);
-        if (const auto problem = viewer_->show(layers)) std::cerr << "tessera watch: " << *problem << "\n";
+        // The filter of another's view is not known here.
+        const bool shows_samples = options_.view.empty() && (filter_.empty() || filter_ == "none");
+        const Samples samples = shows_samples ? Samples::AreThePicture : Samples::AreDenoised;
+        if (const auto problem = viewer_->show(layers_of(frame, image, samples)))
+            std::cerr << "tessera watch: " << *problem << "\n";
     }
 
     void write_noise(const frame::FilmTile& film) {

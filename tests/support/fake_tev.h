@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -40,7 +41,12 @@ class FakeTev {
 
     // Until `count` packets have come, or all until the client hangs up.
     void read(int count = std::numeric_limits<int>::max()) {
-        if (connection_ < 0) connection_ = ::accept(listener_, nullptr, nullptr);
+        if (connection_ < 0) {
+            constexpr int Minute = 60'000;
+            pollfd entry{.fd = listener_, .events = POLLIN, .revents = 0};
+            ASSERT_EQ(::poll(&entry, 1, Minute), 1) << "nothing connects";
+            connection_ = ::accept(listener_, nullptr, nullptr);
+        }
         for (int i = 0; i < count; ++i) {
             std::uint32_t size = 0;
             if (!receives(&size, sizeof size)) return;
