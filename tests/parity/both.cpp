@@ -39,8 +39,6 @@ frame::FilmTile Renderer::film(const view::View& view, const Rect& tile, frame::
     if (result.status != backend::RenderStatus::Done) {
         throw Error(ErrorCode::Internal, "the unit was not rendered");
     }
-    rays_ += result.rays;
-    for (const std::uint32_t count : result.blocks.at(0).counts) samples_ += count;
     return std::move(result.blocks.at(0));
 }
 

@@ -21,13 +21,10 @@ class Renderer {
     Renderer(const std::string& backend, const tools::bench::BenchScene& scene);
 
     frame::FilmTile film(const view::View& view, const Rect& tile, frame::SampleBlock block) const;
-    // Of all samples so far.
-    double rays_per_sample() const { return double(rays_) / double(samples_); }
 
   private:
     std::shared_ptr<scene::BlobStore> blobs_ = std::make_shared<scene::BlobStore>();
     std::unique_ptr<backend::Backend> backend_;
-    mutable std::uint64_t rays_ = 0, samples_ = 0;
 };
 
 }  // namespace tessera::test

@@ -156,9 +156,7 @@ TEST_F(LiveProcess, WatchShowsFramesAndLayersInTev) {
         ASSERT_EQ(tev.planes["R"][i], picture.pixel(i)[0]) << i;
         ASSERT_EQ(tev.planes["B"][i], picture.pixel(i)[2]) << i;
     }
-    const auto [least, most] = std::ranges::minmax(tev.planes["samples.count"]);
-    EXPECT_GE(least, 16.0f);
-    EXPECT_GT(most, 0.0f);
+    EXPECT_GE(std::ranges::min(tev.planes["samples.count"]), 16.0f);
 
     ChildProcess refused(
         cluster.folder().path(), "watch-no-tev", "tessera",
