@@ -7,6 +7,7 @@
 
 #include "client/tools/frame_names.h"
 #include "client/tools/pictures.h"
+#include "client/tools/tev/viewer.h"
 #include "mediator/backend/catalog.h"
 #include "mediator/base/nearest.h"
 
@@ -220,6 +221,14 @@ Expected<void> set_continued(const RenderOptions& options, RenderPlan& plan) {
     return {};
 }
 
+Expected<void> set_tev(const RenderOptions& options, RenderPlan& plan) {
+    plan.tev = options.tev;
+    if (!options.tev) return {};
+    if (auto fine = tev::check_address(*options.tev); !fine)
+        return wrong(std::string("--tev: ") + fine.error().what());
+    return {};
+}
+
 // Renders a larger picture with one pixel per sample; the usual size limits apply.
 Expected<void> set_coverage(const RenderOptions& options, RenderPlan& plan) {
     constexpr std::uint64_t MaxSamples = 4096, DefaultSamples = 16, MaxEdge = 65536;
@@ -371,7 +380,7 @@ Expected<RenderPlan> parse_options(const RenderOptions& options) {
     if (auto fine = check_outputs(options); !fine) return tl::unexpected(fine.error());
     if (auto fine = check_noise_map(options); !fine) return tl::unexpected(fine.error());
     plan.noise_map = options.noise_map;
-    plan.tev = options.tev;
+    if (auto fine = set_tev(options, plan); !fine) return tl::unexpected(fine.error());
     if (auto fine = set_sequence(options, plan); !fine) return tl::unexpected(fine.error());
     auto embedded = embedded_settings(options);
     if (!embedded) return tl::unexpected(embedded.error());

@@ -84,6 +84,10 @@ class Watch {
             limit = *parsed;
         }
         if (const auto code = choose_size()) return *code;
+        if (options_.tev) {
+            if (const auto fine = tev::check_address(*options_.tev); !fine)
+                return report_error(WatchName, cli::ExitUsage, std::string("--tev: ") + fine.error().what());
+        }
         if (options_.tev) viewer_.emplace(*options_.tev, "tessera watch");
         session_ = client::connect(options_.address, std::make_shared<scene::BlobStore>(), clock_,
                                    session_settings(options_.name, interrupts_.token()));

@@ -69,6 +69,10 @@ TEST_F(RenderInTev, NeedsAViewer) {
                          {"render", scene, "-o", folder / "no.png", "--tev", "127.0.0.1:1"});
     EXPECT_EQ(refused.wait(std::chrono::minutes(1)).value_or(-1), 69);
     EXPECT_NE(refused.err().find("cannot reach tev at 127.0.0.1:1"), std::string::npos) << refused.err();
+    ChildProcess wrong(folder.path(), "wrong", "tessera",
+                       {"render", scene, "-o", folder / "no.png", "--tev", "host:port"});
+    EXPECT_EQ(wrong.wait(std::chrono::minutes(1)).value_or(-1), 64);
+    EXPECT_NE(wrong.err().find("--tev: 'host:port' is not HOST"), std::string::npos) << wrong.err();
 }
 
 }  // namespace

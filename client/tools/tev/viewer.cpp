@@ -14,8 +14,6 @@
 #include <system_error>
 #include <utility>
 
-#include "mediator/base/error.h"
-
 namespace tessera::tools::tev {
 
 namespace {
@@ -27,14 +25,15 @@ struct HostAndPort {
     std::string host, port = DefaultPort;
 };
 
-HostAndPort parse(const std::string& address) {
-    const Error wrong(ErrorCode::InvalidInput,
-                      "'" + address + "' is not HOST, HOST:PORT or [HOST]:PORT, as localhost:" + DefaultPort);
+Expected<HostAndPort> parse(const std::string& address) {
+    const auto wrong = tl::unexpected(
+        Error(ErrorCode::InvalidInput,
+              "'" + address + "' is not HOST, HOST:PORT or [HOST]:PORT, as localhost:" + DefaultPort));
     HostAndPort parsed;
     std::string rest = address;
     if (rest.starts_with('[')) {
         const std::size_t end = rest.find(']');
-        if (end == std::string::npos) throw wrong;
+        if (end == std::string::npos) return wrong;
         parsed.host = rest.substr(1, end - 1);
         rest = rest.substr(end + 1);
     } else {
@@ -43,12 +42,12 @@ HostAndPort parse(const std::string& address) {
         rest = rest.substr(end);
     }
     if (!rest.empty()) {
-        if (rest.front() != ':') throw wrong;
+        if (rest.front() != ':') return wrong;
         parsed.port = rest.substr(1);
     }
     const bool is_number = !parsed.port.empty() && parsed.port.size() <= 5 &&
                            parsed.port.find_first_not_of("0123456789") == std::string::npos;
-    if (parsed.host.empty() || !is_number) throw wrong;
+    if (parsed.host.empty() || !is_number) return wrong;
     return parsed;
 }
 
@@ -70,7 +69,9 @@ int connect_within_limit(int socket, const addrinfo& to) {
 }
 
 int connected_socket(const std::string& address) {
-    const HostAndPort to = parse(address);
+    const auto parsed = parse(address);
+    if (!parsed) throw parsed.error();
+    const HostAndPort& to = *parsed;
     const auto unavailable = [&](const std::string& reason) {
         return Error(ErrorCode::Unavailable, "cannot reach tev at " + address + ": " + reason +
                                                  ": start it there, or check the address");
@@ -134,6 +135,12 @@ std::vector<float> cut(std::span<const float> planes, std::uint32_t width, std::
 }
 
 }  // namespace
+
+Expected<void> check_address(const std::string& address) {
+    const auto parsed = parse(address);
+    if (!parsed) return tl::unexpected(parsed.error());
+    return {};
+}
 
 Viewer::Viewer(const std::string& address, std::string image)
     : address_(address), image_(std::move(image)), socket_(connected_socket(address)) {}

@@ -6,18 +6,20 @@
 #include <vector>
 
 #include "client/tools/tev/packets.h"
-#include "mediator/base/clock.h"
+#include "mediator/base/error.h"
 #include "mediator/picture/exr_writer.h"
 
 namespace tessera::tools::tev {
 
 inline constexpr const char* DefaultPort = "14158";
 
+// InvalidInput unless it is HOST, HOST:PORT or [HOST]:PORT.
+Expected<void> check_address(const std::string& address);
+
 // A picture of this process in the image viewer tev, which may run on another machine. Only what has changed is sent.
 class Viewer {
   public:
-    // `address`: HOST, HOST:PORT or [HOST]:PORT. Throws Error: InvalidInput if it is something else, Unavailable if no viewer
-    // listens there.
+    // Throws Error: InvalidInput for an address of another form, Unavailable if no viewer listens there.
     Viewer(const std::string& address, std::string image);
     ~Viewer();
     Viewer(const Viewer&) = delete;
