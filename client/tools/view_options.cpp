@@ -143,8 +143,8 @@ void ViewOptions::add_to(cli::CommandLine& command) {
                    clamp);
     command.choice(
         "--sky-sampling",
-        "light samples of the sky: where the surfaces in the picture see it, for rooms with windows "
-        "(measured after the first 2^18 samples), or by its luminance alone",
+        "light samples of sky and suns: where the surfaces in the picture see them, for rooms with "
+        "windows (measured after the first 2^18 samples), or by the sky's luminance alone",
         sky_sampling, {"visible", "luminance"});
     command.choice("--pixel-filter", "pixel reconstruction filter", pixel_filter,
                    {"box", "gaussian", "blackman-harris"});

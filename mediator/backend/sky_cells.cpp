@@ -8,6 +8,7 @@
 #include <span>
 
 #include "mediator/base/parallel.h"
+#include "mediator/shading/area_lights.h"
 #include "mediator/shading/environment.h"
 #include "mediator/shading/sampler.h"
 #include "mediator/shading/sky_cells.h"
@@ -25,7 +26,7 @@ constexpr std::uint64_t Paths = 1 << 15, PathsPerTask = 256, TrialPaths = 1 << 1
 // Far from those of any film.
 constexpr std::uint64_t FirstSample = std::uint64_t{1} << 63;
 constexpr std::size_t PlacesPerCell = 64;
-constexpr std::uint32_t RaysPerTile = 4, MapRays = 256;
+constexpr std::uint32_t RaysPerTile = 4, MapRays = 256, SunRays = 64;
 // Cells pay where less of the sky is seen.
 constexpr double MostVisible = 0.5;
 // At least this much of the samples for each of tiles and map, if they have any light.
@@ -76,6 +77,35 @@ struct SplitSky {
     const SkyMeans means_;
 };
 
+// The directional lights that the view sees.
+class Suns {
+  public:
+    Suns(const shading::Scene& scene, const shading::View& view) {
+        for (std::uint32_t i = scene.tree_light_count; i < scene.light_count; ++i) {
+            const shading::LightSource& light = scene.lights.items[i];
+            if (light.kind != shading::LightDirectional || !(light.irradiance > 0.0f)) continue;
+            if ((light.layers & view.layers) != 0u) suns_.push_back(light);
+        }
+    }
+
+    bool empty() const { return suns_.empty(); }
+    double irradiance() const {
+        return std::accumulate(suns_.begin(), suns_.end(), 0.0,
+                               [](double sum, const auto& sun) { return sum + double(sun.irradiance); });
+    }
+    // Towards a sun that is chosen by its irradiance.
+    glm::vec3 direction(float u, const glm::vec2& in_disk) const {
+        double left = double(u) * irradiance();
+        std::size_t chosen = 0;
+        while (chosen + 1 < suns_.size() && (left -= double(suns_[chosen].irradiance)) >= 0.0) ++chosen;
+        return shading::sample_cone(-suns_[chosen].direction, suns_[chosen].one_minus_cos_half_angle,
+                                    in_disk);
+    }
+
+  private:
+    std::vector<shading::LightSource> suns_;
+};
+
 // What a cell learns.
 struct CellLight {
     Tiles tiles{};         // base luminance times cosine that arrives, mean over the tile
@@ -83,39 +113,72 @@ struct CellLight {
     double excess = 0.0;   // the same of the excess
     double visible = 0.0;  // light that arrives, found by all rays
     double all = 0.0;      // if nothing were hidden
+    double visible_suns = 0.0, all_suns = 0.0;  // the same of directional lights, in rays times cosine
 };
 
-CellLight measure_cell(const SplitSky& sky, const SkyRays& rays, std::span<const SkyPlace> places,
-                       std::uint32_t cell) {
-    CellLight light;
-    std::uint32_t number = 0;
-    const auto pair = [&] { return pair_of(number++, shading::hash_u32(cell)); };
-    const auto arriving = [&](const glm::vec3& direction, double luminance) {
+// Rays from places of a cell.
+class CellRays {
+  public:
+    CellRays(const SkyRays& rays, std::span<const SkyPlace> places, std::uint32_t cell)
+        : rays_(rays), places_(places), seed_(shading::hash_u32(cell)) {}
+
+    glm::vec2 pair() { return pair_of(number_++, seed_); }
+    // What arrives at one of the places of light of this size: times the cosine; 0 where it is hidden. Adds it to
+    // `visible`, and to `all` as if nothing were hidden.
+    double arriving(const glm::vec3& direction, double size, double& visible, double& all) {
         const SkyPlace& place =
-            places[std::min(static_cast<std::size_t>(pair().x * float(places.size())), places.size() - 1)];
+            places_[std::min(static_cast<std::size_t>(pair().x * float(places_.size())), places_.size() - 1)];
         const bool is_two_sided = place.normal == glm::vec3(0.0f);
         const double cosine = is_two_sided ? 0.5 : double(glm::dot(place.normal, direction));
-        if (!(cosine > 0.0) || !(luminance > 0.0)) return 0.0;
-        light.all += luminance * cosine;
-        if (!rays.sees_sky(place, direction, number)) return 0.0;
-        light.visible += luminance * cosine;
-        return luminance * cosine;
+        if (!(cosine > 0.0) || !(size > 0.0)) return 0.0;
+        all += size * cosine;
+        if (!rays_.sees_sky(place, direction, number_)) return 0.0;
+        visible += size * cosine;
+        return size * cosine;
+    }
+
+  private:
+    const SkyRays& rays_;
+    std::span<const SkyPlace> places_;
+    std::uint32_t seed_;
+    std::uint32_t number_ = 0;
+};
+
+void measure_sky(const SplitSky& sky, CellRays& rays, CellLight& light) {
+    const auto arriving = [&](const glm::vec3& direction, double luminance) {
+        return rays.arriving(direction, luminance, light.visible, light.all);
     };
     for (std::uint32_t tile = 0; tile < SkyTiles; ++tile) {
         if (!(sky.base[tile] > 0.0)) continue;
         for (std::uint32_t i = 0; i < RaysPerTile; ++i)
             light.tiles[tile] +=
-                arriving(shading::direction_in_tile(tile, pair()), sky.base[tile]) / RaysPerTile;
+                arriving(shading::direction_in_tile(tile, rays.pair()), sky.base[tile]) / RaysPerTile;
         light.base += light.tiles[tile] / SkyTiles;
     }
-    if (!sky.has_excess()) return light;
+    if (!sky.has_excess()) return;
     for (std::uint32_t i = 0; i < MapRays; ++i) {
-        const glm::vec3 direction = sky.direction_by_map(pair());
+        const glm::vec3 direction = sky.direction_by_map(rays.pair());
         light.excess += arriving(direction, sky.excess(direction)) / MapRays;
     }
     // As if one more ray had found the mean (rule of succession): a sun that shines on less of the cell than the rays
     // can tell keeps a chance. 1/4: the mean cosine over the sphere, where it is negative 0.
     light.excess += 0.25 * sky.excess_mean() / MapRays;
+}
+
+struct InfiniteLights {
+    std::optional<SplitSky> sky;
+    Suns suns;
+};
+
+CellLight measure_cell(const InfiniteLights& lights, const SkyRays& scene_rays,
+                       std::span<const SkyPlace> places, std::uint32_t cell) {
+    CellRays rays(scene_rays, places, cell);
+    CellLight light;
+    if (lights.sky) measure_sky(*lights.sky, rays, light);
+    for (std::uint32_t i = 0; i < SunRays && !lights.suns.empty(); ++i) {
+        const float choice = rays.pair().x;
+        rays.arriving(lights.suns.direction(choice, rays.pair()), 1.0, light.visible_suns, light.all_suns);
+    }
     return light;
 }
 
@@ -171,6 +234,8 @@ void add_cell(SkyCells& result, const CellLight& light, double irradiance_unit) 
     const double sum = std::accumulate(spread.begin(), spread.end(), 0.0), both = light.base + light.excess;
     SkyCell cell{
         .cdf = static_cast<std::uint32_t>(result.cdfs.size()), .tile_chance = 0.0f, .irradiance = 0.0f};
+    // As if two more rays that face the suns head on had found one of them (rule of succession).
+    cell.suns = static_cast<float>((light.visible_suns + 1.0) / (light.all_suns + 2.0));
     double part = 0.0;
     for (std::uint32_t tile = 0; tile < SkyTiles; ++tile) {
         part += sum > 0.0 ? spread[tile] / sum : 1.0 / SkyTiles;
@@ -219,18 +284,21 @@ std::optional<SkyCells> make_sky_cells(const SceneTables& tables, const shading:
                                        const SkyRays& rays, std::uint32_t threads,
                                        const std::stop_token& stop) {
     SkyCells result;
-    if (tables.scene.environment_light < 0) return result;
     tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads));
     const shading::Scene scene = on_host(tables);
-    const SplitSky sky(scene, tables.sky);
+    InfiniteLights infinite{.suns = Suns(scene, view)};
+    if (scene.environment_light >= 0) infinite.sky.emplace(scene, tables.sky);
+    const bool has_choice =
+        scene.light_count - scene.tree_light_count + (scene.tree_light_count > 0 ? 1 : 0) > 1;
+    if (!infinite.sky && (infinite.suns.empty() || !has_choice)) return result;
     // A first look at all places as if they were one cell.
     const std::vector<SkyPlace> some = trace_places(view, rays, TrialPaths, arena, stop);
     if (stop.stop_requested()) return std::nullopt;
     if (some.empty()) return result;
-    const CellLight together = measure_cell(sky, rays, some, shading::NoSkyCell);
-    if (!(together.all > 0.0)) return result;
-    result.visible = together.visible / together.all;
-    if (result.visible > MostVisible) return result;
+    const CellLight together = measure_cell(infinite, rays, some, shading::NoSkyCell);
+    if (together.all > 0.0) result.visible = together.visible / together.all;
+    if (together.all_suns > 0.0) result.visible_suns = together.visible_suns / together.all_suns;
+    if (result.visible > MostVisible && !(has_choice && result.visible_suns <= MostVisible)) return result;
 
     std::array<std::vector<SkyPlace>, shading::SkyFaces> faces;
     for (const SkyPlace& place : trace_places(view, rays, Paths, arena, stop))
@@ -240,7 +308,7 @@ std::optional<SkyCells> make_sky_cells(const SceneTables& tables, const shading:
     std::vector<CellLight> lights(tree.cells.size());
     parallel_for(arena, lights.size(), [&](std::size_t cell) {
         if (!stop.stop_requested())
-            lights[cell] = measure_cell(sky, rays, tree.cells[cell], static_cast<std::uint32_t>(cell));
+            lights[cell] = measure_cell(infinite, rays, tree.cells[cell], static_cast<std::uint32_t>(cell));
     });
     if (stop.stop_requested()) return std::nullopt;
     result.nodes = std::move(tree.nodes);

@@ -31,15 +31,16 @@ struct SkyCells {
     std::vector<shading::SkyNode> nodes;  // none: the view does not need them
     std::vector<shading::SkyCell> cells;
     std::vector<float> cdfs;
-    double visible = 1.0;  // share of the sky's light that arrives at the places, in [0, 1]
+    double visible = 1.0;       // share of the sky's light that arrives at the places, in [0, 1]
+    double visible_suns = 1.0;  // the same of directional lights
 
     bool empty() const { return cells.empty(); }
     // The addresses must stay valid.
     void use_in(shading::View& view, std::uint32_t first_sample) const;
 };
 
-// A pure function of scene, view and rays. Empty where the sky is black or most of it is seen: light samples in
-// proportion to its luminance do as well there. nullopt: stopped. `threads`: 0 = all cores.
+// A pure function of scene, view and rays. Empty where sky and suns are black or most of them is seen: light samples in
+// proportion to their unoccluded light do as well there. nullopt: stopped. `threads`: 0 = all cores.
 std::optional<SkyCells> make_sky_cells(const SceneTables& tables, const shading::View& view,
                                        const SkyRays& rays, std::uint32_t threads,
                                        const std::stop_token& stop);

@@ -251,6 +251,6 @@ static_assert(offsetof(View, sky_nodes) == 176);
 static_assert(offsetof(View, sky_cells) == 184);
 static_assert(offsetof(View, sky_cdfs) == 192);
 static_assert(sizeof(SkyNode) == 12);
-static_assert(sizeof(SkyCell) == 12);
+static_assert(sizeof(SkyCell) == 16);
 
 }  // namespace tessera::shading

@@ -39,12 +39,16 @@ inline bool has_sampled_infinite_light(IN(Scene) scene, IN(View) view, IN(Receiv
     return false;
 }
 
-// Of an infinite light. That of the sky is what arrives at the receiver's cell, or else its mean over all directions.
+// Of an infinite light. Where the receiver has a cell, what the cell has seen arrive; else that of the sky is its mean
+// over all directions.
 inline float irradiance_of(IN(View) view, IN(LightSource) light, IN(Receiver) receiver) {
     if (light.kind == LightEnvironment && receiver.sky_cell != NoSkyCell)
         return view.sky_cells.items[receiver.sky_cell].irradiance;
-    if (light.kind == LightEnvironment || receiver.normal == vec3(0.0f)) return light.irradiance;
-    return light.irradiance * greater_of(-dot(light.direction, receiver.normal), 0.0f);
+    if (light.kind == LightEnvironment) return light.irradiance;
+    float arriving = light.irradiance;
+    if (receiver.sky_cell != NoSkyCell) arriving *= view.sky_cells.items[receiver.sky_cell].suns;
+    if (receiver.normal == vec3(0.0f)) return arriving;
+    return arriving * greater_of(-dot(light.direction, receiver.normal), 0.0f);
 }
 
 // Of the light tree, as irradiance_of(): of the children of its root, since the root may surround the receiver.

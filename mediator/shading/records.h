@@ -303,6 +303,7 @@ struct SkyCell {
     uint cdf;           // of its tiles
     float tile_chance;  // probability of sampling by tiles; else by the map
     float irradiance;   // that arrives, in the unit of LightSource
+    float suns;         // share of the light of directional lights that arrives, in (0, 1)
 };
 
 ARRAY_OF(SkyNode, SkyNodeArray, 4);

@@ -241,7 +241,7 @@ std::vector<SkyNode> make_sky_nodes() {
 }
 
 std::vector<SkyCell> make_sky_cells() {
-    return {{0u, 0.4f, 0.5f}, {SkyTiles, 1.0f, 0.1f}};
+    return {{0u, 0.4f, 0.5f, 0.2f}, {SkyTiles, 1.0f, 0.1f, 0.9f}};
 }
 
 std::vector<float> make_sky_cdfs(Generator& random) {

@@ -130,7 +130,10 @@ class SceneModel {
         light({.kind = scene::LightKind::Point, .intensity = glm::vec3(intensity)},
               glm::translate(glm::dmat4(1.0), place));
     }
-    void light(const scene::Light& source, const glm::dmat4& place) { hang(create(source), place); }
+    void light(const scene::Light& source, const glm::dmat4& place,
+               std::uint32_t layers = scene::RootLayers) {
+        hang(create(source), place, layers);
+    }
 
     // The motion of everything added from now on while the shutter is open: transforms at even motion keys after the
     // first, each seen from the first.

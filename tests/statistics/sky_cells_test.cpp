@@ -63,16 +63,22 @@ SkyCells cells_of(const PathTracer& tracer, std::uint32_t threads = 1) {
 
 struct Compared {
     Noise plain, guided;
+    SkyCells cells;
 };
-Compared compared(const SceneAdapter& world, const view::View& view, std::uint64_t spp) {
+Compared with_and_without_cells(const SceneAdapter& world, const view::View& view, std::uint64_t spp) {
     PathTracer tracer(world.tables(), world.scene(), view);
-    const Noise plain = noise_of(tracer, spp);
-    const SkyCells cells = cells_of(tracer);
-    EXPECT_FALSE(cells.empty());
-    EXPECT_GT(cells.visible, 0.0);
-    EXPECT_LT(cells.visible, 0.2);
-    tracer.use_sky_cells(cells, 0);
-    return {plain, noise_of(tracer, spp)};
+    Compared found{.plain = noise_of(tracer, spp), .guided = {}, .cells = cells_of(tracer)};
+    EXPECT_FALSE(found.cells.empty());
+    tracer.use_sky_cells(found.cells, 0);
+    found.guided = noise_of(tracer, spp);
+    return found;
+}
+
+Compared compared(const SceneAdapter& world, const view::View& view, std::uint64_t spp) {
+    Compared found = with_and_without_cells(world, view, spp);
+    EXPECT_GT(found.cells.visible, 0.0);
+    EXPECT_LT(found.cells.visible, 0.2);
+    return found;
 }
 
 void expect_same_mean(const Compared& found) {
@@ -106,6 +112,68 @@ TEST(SkyCells, KeepTheLightOfLampsAndOfAPane) {
     pane.thickness = 0.0f;
     room.quad(room.material(pane), {{{2, -0.5f, 1}, {2, -0.5f, 2}, {2, 0.5f, 2}, {2, 0.5f, 1}}});
     expect_same_mean(compared(room.build(), inside_room(), 512));
+}
+
+// A sun that shines through the window, or, turned the other way, on the wall outside.
+void add_sun(Room& room, float intensity, double turn, float angle = 0.01f) {
+    room.light({.kind = scene::LightKind::Directional, .intensity = glm::vec3(intensity), .angle = angle},
+               glm::rotate(glm::dmat4(1.0), turn, {0.0, 1.0, 0.0}));
+}
+constexpr double ThroughWindow = 1.2, OnOuterWall = -1.2;
+
+double greatest_share_of_suns(const SkyCells& cells) {
+    double greatest = 0.0;
+    for (const shading::SkyCell& cell : cells.cells) greatest = std::max(greatest, double(cell.suns));
+    return greatest;
+}
+
+TEST(SunsInSkyCells, TakeFewSamplesFromTheSkyWhereTheyAreHidden) {
+    Room room;
+    room.sky(glm::vec3(1.0f));
+    add_sun(room, 20.0f, OnOuterWall);
+    const Compared found = compared(room.build(), inside_room(), 512);
+    expect_same_mean(found);
+    EXPECT_LT(found.guided.variance, found.plain.variance / 8.0);
+    EXPECT_EQ(found.cells.visible_suns, 0.0);
+    // Of cells that it does not face, nothing is known.
+    EXPECT_LE(greatest_share_of_suns(found.cells), 0.5);
+}
+
+TEST(SunsInSkyCells, AreSampledWhereTheyShine) {
+    Room room;
+    room.sky(glm::vec3(1.0f));
+    add_sun(room, 20.0f, ThroughWindow);
+    const Compared found = compared(room.build(), inside_room(), 512);
+    expect_same_mean(found);
+    EXPECT_LT(found.guided.variance, found.plain.variance);
+    EXPECT_GT(found.cells.visible_suns, 0.0);
+    EXPECT_LT(found.cells.visible_suns, 0.2);
+    EXPECT_GT(greatest_share_of_suns(found.cells), 0.8);
+}
+
+TEST(SunsInSkyCells, NeedNoSky) {
+    Room room;
+    room.point_light({0.0, 0.0, 1.5}, 1.0f);
+    add_sun(room, 20.0f, OnOuterWall, 0.0f);
+    const Compared found = with_and_without_cells(room.build(), inside_room(), 512);
+    expect_same_mean(found);
+    EXPECT_LT(found.guided.variance, found.plain.variance / 2.5);
+}
+
+// The only light is sampled anyway; one that the view does not see is not.
+TEST(SunsInSkyCells, AreLeftOutWhereThereIsNoChoice) {
+    Room room;
+    add_sun(room, 20.0f, OnOuterWall);
+    const SceneAdapter& world = room.build();
+    EXPECT_TRUE(cells_of(PathTracer(world.tables(), world.scene(), inside_room())).empty());
+    Room lamps;
+    lamps.floor(lamps.material(lamp(4.0f)), -0.2f, 2.9f);
+    lamps.light({.kind = scene::LightKind::Directional, .intensity = glm::vec3(20.0f)},
+                glm::rotate(glm::dmat4(1.0), OnOuterWall, {0.0, 1.0, 0.0}), 2);
+    const SceneAdapter& lit = lamps.build();
+    view::View view = inside_room();
+    view.layers = ~2u;
+    EXPECT_TRUE(cells_of(PathTracer(lit.tables(), lit.scene(), view)).empty());
 }
 
 // What a view that is not yet at rest does: the first samples are those of a view without cells.
@@ -267,12 +335,14 @@ TEST(SkyCellsNumerics, AreFiniteUnderAnySky) {
     for (const float sun : {0.0f, 1e-38f, 1e9f, 3e38f, -5.0f, Inf, Nan}) {
         Room room;
         room.sky_with_sun(sun);
+        add_sun(room, std::isfinite(sun) && sun > 0.0f ? sun : 1.0f, ThroughWindow);
         const SceneAdapter& world = room.build();
         const SkyCells cells = cells_of(PathTracer(world.tables(), world.scene(), inside_room()));
         for (const float value : cells.cdfs) ASSERT_TRUE(value >= 0.0f && value <= 1.0f) << sun;
         for (const shading::SkyCell& cell : cells.cells) {
             ASSERT_TRUE(std::isfinite(cell.irradiance) && cell.irradiance >= 0.0f) << sun;
             ASSERT_TRUE(cell.tile_chance >= 0.0f && cell.tile_chance <= 1.0f) << sun;
+            ASSERT_TRUE(cell.suns > 0.0f && cell.suns < 1.0f) << sun;
         }
     }
 }
