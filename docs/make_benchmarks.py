@@ -170,6 +170,22 @@ def transport_rows(report):
             yield f"| geometric mean | {renderer} | | | | | | | | {ratio:.2f} |"
 
 
+def depth_rows(report):
+    """Noise, light and time by the lengths of paths, each over those of whole paths."""
+    yield "| scene | noise: direct light, 1, 2, more bounces | light | time |"
+    yield "|---|---|---|---|"
+    for scene in report["scenes"]:
+        depths = next((curve["depths"] for curve in scene["curves"] if curve["depths"]), None)
+        if depths:
+            yield f"| `{scene['scene']}` | {' | '.join(parts(depths, key) for key in ('noise', 'light', 'seconds'))} |"
+
+
+def parts(depths, key):
+    """What each length adds, in percent. The films are independent, so that a part may be negative."""
+    shares = [100 * depth[key] / depths[-1][key] for depth in depths]
+    return ", ".join(f"{after - before:.0f} %" for before, after in zip([0, *shares], shares))
+
+
 def page(folder, version):
     yield INTRODUCTION
     yield machine(version)
@@ -222,6 +238,9 @@ def transport_section(folder):
            "all numbers.\n\n![relMSE over seconds](transport.svg)\n"
            f"{measured(folder, 'transport.json')}")
     yield "\n".join(transport_rows(transport)) + "\n"
+    yield ("Where the noise comes from, and where the time goes: what direct light, the first two bounces and all others add, measured with paths that "
+           "end there.\n")
+    yield "\n".join(depth_rows(transport)) + "\n"
 
 
 def main():

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -96,6 +97,17 @@ TEST(BenchTransport, FindsTheLightOfRareSamples) {
     EXPECT_NEAR(samples.light_in_brightest(1.0), 1.0, 1e-12);
 }
 
+TEST(BenchTransport, NoiseIsRelativeToTheReferences) {
+    const auto even = [](float value) {
+        frame::Image image(4, 2, 3);
+        std::ranges::fill(image.values, value);
+        return image;
+    };
+    const ReferencePair truth(even(2.0f), even(2.0f));
+    EXPECT_NEAR(relative_noise(even(2.5f), even(1.5f), truth), 0.5 / (4.0 + 0.04), 1e-12);
+    EXPECT_EQ(relative_noise(even(3.0f), even(3.0f), truth), 0.0);
+}
+
 TEST(BenchTransport, MeasuresARealScene) {
     const References folder;
     const auto scene = load_scene("cornell", "");
@@ -124,8 +136,17 @@ TEST(BenchTransport, MeasuresARealScene) {
     EXPECT_LT(points[2].light_deviation, points[0].light_deviation);
     EXPECT_GT(measured->curves[0].first_picture_seconds, 0.0);
     EXPECT_EQ(measured->curves[0].samples.samples(), 48u * 32u * HistogramSeeds);
+    const std::vector<PathDepth>& depths = measured->curves[0].depths;
+    ASSERT_EQ(depths.size(), 4u) << "direct light, one and two bounces, whole paths";
+    EXPECT_LT(depths[0].light, depths[1].light);
+    EXPECT_LT(depths[2].light, depths[3].light);
+    EXPECT_NEAR(depths[3].light, 1.0, 5.0 * points[2].light_deviation);
+    for (const PathDepth& depth : depths) EXPECT_GT(depth.noise, 0.0);
+    // Two films of as many samples: the same error, to a factor of the outliers.
+    EXPECT_NEAR(depths[3].noise / points[2].relmse.value, 1.0, 0.6);
 
     const auto json = nlohmann::json::parse(transport_json({*measured}, plan));
+    EXPECT_EQ(json["scenes"][0]["curves"][0]["depths"][1]["bounces"], 1);
     EXPECT_EQ(json["scenes"][0]["curves"][0]["points"].size(), 3u);
     EXPECT_EQ(json["scenes"][0]["curves"][0]["histogram"]["samples"], 48 * 32 * HistogramSeeds);
     EXPECT_TRUE(json["mean_time_to_equal_error_over_cycles"]["embree"].is_null()) << "Cycles did not run";

@@ -1,5 +1,6 @@
 // Light samples of the sky where it is seen (mediator/shading/sky_cells.h), of every back-end that traces light.
 #include <cmath>
+#include <functional>
 
 #include "mediator/scene/scene.h"
 #include "tests/contract/backend_contract.h"
@@ -11,9 +12,10 @@ namespace {
 using frame::FilmTile;
 
 struct BackendSkyCells : testing::TestWithParam<std::string> {
-    BackendSkyCells() {
+    BackendSkyCells() : BackendSkyCells([](test::SceneModel& lit) { test::add_sky_with_sun(lit, 100.0f); }) {}
+    explicit BackendSkyCells(const std::function<void(test::SceneModel&)>& add_lights) {
         test::add_room(room);
-        test::add_sky_with_sun(room, 100.0f);
+        add_lights(room);
         content = scene::snapshot(room.finished());
         backend = fresh(2);
         view.id = ViewId{1};
@@ -64,16 +66,34 @@ struct BackendSkyCells : testing::TestWithParam<std::string> {
     scene::ChangeList content;
     std::unique_ptr<Backend> backend;
     view::View view = test::inside_room();
+    void expect_same_light_and_less_noise() const {
+        view::View without = view;
+        without.sky_cells_from = view::NoSkyCells;
+        const Mean plain = mean_of(without), guided = mean_of(view);
+        EXPECT_GT(plain.value, 0.0);
+        EXPECT_NEAR(guided.value, plain.value, 4.0 * std::hypot(plain.standard_error, guided.standard_error));
+        EXPECT_LT(guided.standard_error, 0.9 * plain.standard_error);
+    }
+
     Rect whole{0, 0, 16, 16};
 };
 
 TEST_P(BackendSkyCells, KeepTheLightAndHaveLessNoise) {
-    view::View without = view;
-    without.sky_cells_from = view::NoSkyCells;
-    const Mean plain = mean_of(without), guided = mean_of(view);
-    EXPECT_GT(plain.value, 0.0);
-    EXPECT_NEAR(guided.value, plain.value, 4.0 * std::hypot(plain.standard_error, guided.standard_error));
-    EXPECT_LT(guided.standard_error, 0.9 * plain.standard_error);
+    expect_same_light_and_less_noise();
+}
+
+// A lamp, and a sun on the wall outside; no sky.
+struct BackendSunCells : BackendSkyCells {
+    BackendSunCells()
+        : BackendSkyCells([](test::SceneModel& lit) {
+              lit.point_light({0.0, 0.0, 1.5}, 1.0f);
+              lit.light({.kind = scene::LightKind::Directional, .intensity = glm::vec3(20.0f)},
+                        glm::rotate(glm::dmat4(1.0), -1.2, {0.0, 1.0, 0.0}));
+          }) {}
+};
+
+TEST_P(BackendSunCells, KeepTheLightAndHaveLessNoise) {
+    expect_same_light_and_less_noise();
 }
 
 // Whatever part of the picture a node renders first, and when and with how many threads it makes the cells.
@@ -109,6 +129,8 @@ std::vector<std::string> that_trace() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalog, BackendSkyCells, testing::ValuesIn(that_trace()),
+                         [](const auto& entry) { return entry.param; });
+INSTANTIATE_TEST_SUITE_P(Catalog, BackendSunCells, testing::ValuesIn(that_trace()),
                          [](const auto& entry) { return entry.param; });
 
 }  // namespace

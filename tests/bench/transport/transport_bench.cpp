@@ -58,12 +58,13 @@ std::optional<TransportCurve> measure(const std::string& backend, const BenchSce
     const Sampler sampler(scene, arena, backend::find_backend(backend));
     const double seeds = plan.seeds;
     const double pixels = double(plan.size.width) * double(plan.size.height);
-    const auto film_of = [&](std::uint32_t seed) {
+    const auto view_of = [&](std::uint32_t seed) {
         view::View view = sampler.view(plan.size.width, plan.size.height, {frame::Channel::Radiance},
                                        view::PathClass::Indirect, seed);
         view.sky_cells_from = view::visible_sky_from(view.window);  // as users get it
-        return sampler.film(view);
+        return view;
     };
+    const auto film_of = [&](std::uint32_t seed) { return sampler.film(view_of(seed)); };
     for (const std::uint64_t spp : plan.spp) curve.points.push_back({.spp = spp});
     for (std::uint32_t seed = 0; seed < plan.seeds; ++seed) {
         GrowingFilm film = film_of(seed + 1);
@@ -89,6 +90,13 @@ std::optional<TransportCurve> measure(const std::string& backend, const BenchSce
         if (!sampler.grow(film, 1, stop)) return std::nullopt;
         curve.samples.merge(LuminanceHistogram(frame::resolve(film.whole(), frame::Channel::Radiance)));
     }
+    // The noise of paths by their length hardly depends on the back-end: once is enough.
+    if (backend != plan.backends.front()) return curve;
+    progress.say(scene.name + ", " + backend + ": paths by their length");
+    auto depths =
+        measure_depths(sampler, view_of(plan.seeds + HistogramSeeds + 1), truth, plan.spp.back(), stop);
+    if (!depths) return std::nullopt;
+    curve.depths = std::move(*depths);
     return curve;
 }
 

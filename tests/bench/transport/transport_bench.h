@@ -11,6 +11,7 @@
 #include "client/tools/values.h"
 #include "tests/bench/filters/scene_bench.h"
 #include "tests/bench/transport/luminance_histogram.h"
+#include "tests/bench/transport/path_depths.h"
 
 namespace tessera::tools::bench {
 
@@ -46,6 +47,7 @@ struct TransportCurve {
     double memory_bytes = 0.0;  // growth of the process by scene and film; 0: unknown
     std::vector<TransportPoint> points;  // ascending
     LuminanceHistogram samples;          // single ones; empty: unknown
+    std::vector<PathDepth> depths = {};  // at the most samples; empty: unknown
 };
 
 // Adds one of plan.seeds pictures to the means, with its rays per sample if they are known.

@@ -48,6 +48,17 @@ Json histogram_json(const LuminanceHistogram& samples) {
     return {{"samples", samples.samples()}, {"black", samples.black()}, {"log2_luminance", bins}};
 }
 
+// Up to each length, over whole paths; the last is whole.
+Json depths_json(const std::vector<PathDepth>& depths) {
+    Json all = Json::array();
+    for (const PathDepth& depth : depths)
+        all.push_back({{"bounces", depth.bounces},
+                       {"light", depth.light},
+                       {"noise", depth.noise},
+                       {"seconds", depth.seconds}});
+    return all;
+}
+
 Json curve_json(const TransportScene& scene, const TransportCurve& curve, const TransportPlan& plan) {
     Json points = Json::array();
     for (const TransportPoint& point : curve.points) {
@@ -71,6 +82,7 @@ Json curve_json(const TransportScene& scene, const TransportCurve& curve, const 
             {"time_to_equal_error_over_cycles", null_if_zero(over_cycles(scene, curve))},
             {"light_in_brightest_permille", null_if_zero(curve.samples.light_in_brightest(Brightest))},
             {"histogram", curve.samples.samples() == 0 ? Json() : histogram_json(curve.samples)},
+            {"depths", depths_json(curve.depths)},
             {"points", points}};
 }
 
@@ -122,6 +134,27 @@ std::string plots(const TransportScene& scene) {
         html += "<span><i style=\"background:" + line_color(i) + "\"></i>" +
                 escaped(scene.curves[i].renderer) + "</span>";
     return html + "</p>\n";
+}
+
+// Noise, light and time of paths by their length, of the curves that know them.
+std::string depth_table(const TransportScene& scene) {
+    std::string html;
+    for (const TransportCurve& curve : scene.curves) {
+        if (curve.depths.empty()) continue;
+        const PathDepth& whole = curve.depths.back();
+        html += fmt::format(
+            "<p>{}, paths that end early, in percent of whole paths:</p>\n<div class=\"scroll\"><table>"
+            "<tr><th>bounces</th><th>light</th><th>noise</th><th>time</th></tr>\n",
+            escaped(curve.renderer));
+        for (const PathDepth& depth : curve.depths)
+            html += fmt::format(
+                "<tr><td>{}</td><td>{:.0f}</td><td>{}</td><td>{:.0f}</td></tr>\n", depth.bounces,
+                100.0 * depth.light,
+                whole.noise > 0.0 ? fmt::format("{:.0f}", 100.0 * depth.noise / whole.noise) : "-",
+                100.0 * depth.seconds / whole.seconds);
+        html += "</table></div>\n";
+    }
+    return html;
 }
 
 std::string summary(const std::vector<TransportScene>& scenes) {
@@ -232,7 +265,7 @@ std::string transport_html(const std::vector<TransportScene>& scenes, const Tran
     html += summary(scenes);
     for (const TransportScene& scene : scenes)
         html += "<h2>" + escaped(scene.name) + "</h2>\n<p>" + escaped(scene.summary) + "</p>\n" +
-                plots(scene) + table(scene, plan);
+                plots(scene) + table(scene, plan) + depth_table(scene);
     return html + "</body>\n</html>\n";
 }
 
