@@ -172,7 +172,7 @@ def transport_rows(report):
 
 def depth_rows(report):
     """Noise, light and time by the lengths of paths, each over those of whole paths."""
-    yield "| scene | noise: direct light, 1, 2, more bounces | light | time |"
+    yield "| scene | noise: direct light, bounce 1, bounce 2, others | light | time |"
     yield "|---|---|---|---|"
     for scene in report["scenes"]:
         depths = next((curve["depths"] for curve in scene["curves"] if curve["depths"]), None)
@@ -238,8 +238,8 @@ def transport_section(folder):
            "all numbers.\n\n![relMSE over seconds](transport.svg)\n"
            f"{measured(folder, 'transport.json')}")
     yield "\n".join(transport_rows(transport)) + "\n"
-    yield ("Where the noise comes from, and where the time goes: what direct light, the first two bounces and all others add, measured with paths that "
-           "end there.\n")
+    yield ("Where the noise comes from, and where the time goes: what direct light, the first bounce, the second and all others add, measured with paths that "
+           "end there. Such films are independent, so a part can be negative.\n")
     yield "\n".join(depth_rows(transport)) + "\n"
 
 
