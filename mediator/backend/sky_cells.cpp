@@ -77,7 +77,7 @@ struct SplitSky {
     const SkyMeans means_;
 };
 
-// The directional lights that the view sees.
+// The directional lights that the view sees; their motion is ignored, which costs noise, never bias.
 class Suns {
   public:
     Suns(const shading::Scene& scene, const shading::View& view) {

@@ -5,7 +5,7 @@
 #include "mediator/shading/maths.h"
 #include "mediator/shading/records.h"
 
-// Where the sky is seen from, by region: in rooms most of it is hidden by walls, and light samples in proportion to its
+// Where sky and suns are seen from, by region: in rooms most of it is hidden by walls, and light samples in proportion to its
 // luminance alone miss the windows. A cell holds a distribution over tiles of the sphere, in proportion to what arrives
 // from each through its surfaces (as Atanasov et al. 2018). What a cell does not know costs noise, never bias: MIS
 // weights use the densities of the mixture. mediator/backend/sky_cells.h makes them.

@@ -62,10 +62,6 @@ struct BackendSkyCells : testing::TestWithParam<std::string> {
         return {mean, std::sqrt(std::max(squares / Blocks - mean * mean, 0.0) / (Blocks - 1))};
     }
 
-    test::SceneModel room;
-    scene::ChangeList content;
-    std::unique_ptr<Backend> backend;
-    view::View view = test::inside_room();
     void expect_same_light_and_less_noise() const {
         view::View without = view;
         without.sky_cells_from = view::NoSkyCells;
@@ -75,6 +71,10 @@ struct BackendSkyCells : testing::TestWithParam<std::string> {
         EXPECT_LT(guided.standard_error, 0.9 * plain.standard_error);
     }
 
+    test::SceneModel room;
+    scene::ChangeList content;
+    std::unique_ptr<Backend> backend;
+    view::View view = test::inside_room();
     Rect whole{0, 0, 16, 16};
 };
 

@@ -127,12 +127,18 @@ double greatest_share_of_suns(const SkyCells& cells) {
     return greatest;
 }
 
-TEST(SunsInSkyCells, TakeFewSamplesFromTheSkyWhereTheyAreHidden) {
+// A room under an even sky and a sun.
+Compared compared_under_sun(double turn) {
     Room room;
     room.sky(glm::vec3(1.0f));
-    add_sun(room, 20.0f, OnOuterWall);
-    const Compared found = compared(room.build(), inside_room(), 512);
+    add_sun(room, 20.0f, turn);
+    Compared found = compared(room.build(), inside_room(), 512);
     expect_same_mean(found);
+    return found;
+}
+
+TEST(SunsInSkyCells, TakeFewSamplesFromTheSkyWhereTheyAreHidden) {
+    const Compared found = compared_under_sun(OnOuterWall);
     EXPECT_LT(found.guided.variance, found.plain.variance / 8.0);
     EXPECT_EQ(found.cells.visible_suns, 0.0);
     // Of cells that it does not face, nothing is known.
@@ -140,11 +146,7 @@ TEST(SunsInSkyCells, TakeFewSamplesFromTheSkyWhereTheyAreHidden) {
 }
 
 TEST(SunsInSkyCells, AreSampledWhereTheyShine) {
-    Room room;
-    room.sky(glm::vec3(1.0f));
-    add_sun(room, 20.0f, ThroughWindow);
-    const Compared found = compared(room.build(), inside_room(), 512);
-    expect_same_mean(found);
+    const Compared found = compared_under_sun(ThroughWindow);
     EXPECT_LT(found.guided.variance, found.plain.variance);
     EXPECT_GT(found.cells.visible_suns, 0.0);
     EXPECT_LT(found.cells.visible_suns, 0.2);

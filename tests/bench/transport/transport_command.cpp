@@ -145,7 +145,8 @@ Command transport_command(cli::CommandLine& bench) {
         "back-end and, where Debian's blender is installed, of "
         "Cycles: relMSE against two independent references, HDR-FLIP, the "
         "light that is kept, the share of it in the brightest samples, rays per sample, time of the "
-        "first picture, memory. Writes one page with curves (transport.html), the curves alone "
+        "first picture, memory, and noise and time by the lengths of paths. Writes one page with curves "
+        "(transport.html), the curves alone "
         "(transport.svg) and all numbers (transport.json).");
     line.option("-o,--output", "folder to write", options->output);
     line.option("--scenes", "a,b: built-in scenes or scene files (default: all)", options->scenes);

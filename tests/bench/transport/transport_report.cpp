@@ -48,7 +48,7 @@ Json histogram_json(const LuminanceHistogram& samples) {
     return {{"samples", samples.samples()}, {"black", samples.black()}, {"log2_luminance", bins}};
 }
 
-// Up to each length, over whole paths; the last is whole.
+// Of paths up to each length; whole ones come last.
 Json depths_json(const std::vector<PathDepth>& depths) {
     Json all = Json::array();
     for (const PathDepth& depth : depths)
@@ -149,7 +149,7 @@ std::string depth_table(const TransportScene& scene) {
         for (const PathDepth& depth : curve.depths)
             html += fmt::format(
                 "<tr><td>{}</td><td>{:.0f}</td><td>{}</td><td>{:.0f}</td></tr>\n", depth.bounces,
-                100.0 * depth.light,
+                100.0 * depth.light / whole.light,
                 whole.noise > 0.0 ? fmt::format("{:.0f}", 100.0 * depth.noise / whole.noise) : "-",
                 100.0 * depth.seconds / whole.seconds);
         html += "</table></div>\n";
